@@ -8,14 +8,10 @@ from zerorate_tools.simulate import (
     bundled_names,
     load_description,
     read_truth,
-    reference,
     simulate,
     simulate_sessions,
     simulate_to_files,
 )
-from zerorate_tools.simulate.channels import CHANNELS
-from zerorate_tools.simulate.effects import EFFECTS
-from zerorate_tools.simulate.motion import MOTIONS
 
 
 def device(minutes=10, odr_hz=20.0, **more):
@@ -48,21 +44,25 @@ def test_an_effect_disturbs_no_noise():
 
 
 def test_one_session_alone_is_the_same_as_among_all():
-    every = list(simulate_sessions("warm-up-c"))
-    alone, _ = simulate("warm-up-c", session=2)
+    noisy = device(1, 10.0, sensor={"gyro_noise_dps": 0.05}, sessions=2)
+    every = list(simulate_sessions(noisy))
+    alone, _ = simulate(noisy, session=2)
     np.testing.assert_array_equal(alone.columns["gy"], every[1][0].columns["gy"])
 
 
-def test_white_noise_has_the_given_rms_and_block_means_have_less_of_it():
-    for odr_hz, expected in ((100.0, 0.05), (1.0, 0.005)):
-        noisy = {"gyro_noise_dps": 0.05, "gyro_noise_at_hz": 100.0, "odr_hz": odr_hz}
-        recording, _ = simulate(device(60, sensor=noisy))
-        assert recording.gyro_dps().std() == pytest.approx(expected, rel=0.05)
-
-
-def test_white_noise_by_its_density_follows_the_bandwidth():
-    recording, _ = simulate(device(60, sensor={"gyro_noise_dps_rt_hz": 0.005, "odr_hz": 50.0}))
-    assert recording.gyro_dps().std() == pytest.approx(0.005 * 5, rel=0.05)
+@pytest.mark.parametrize(
+    ("more", "rms_dps"),
+    [
+        ({"sensor": {"gyro_noise_dps": 0.05, "gyro_noise_at_hz": 100.0, "odr_hz": 100.0}}, 0.05),
+        ({"sensor": {"gyro_noise_dps": 0.05, "gyro_noise_at_hz": 100.0, "odr_hz": 1.0}}, 0.005),
+        ({"sensor": {"gyro_noise_dps_rt_hz": 0.005, "odr_hz": 50.0}}, 0.025),
+        ({"noise": {"coloured_dps": 0.1, "coloured_exponent": 2.0}}, 0.1),
+        ({"noise": {"telegraph_dps": 0.1, "telegraph_mean_s": 20.0}}, 0.05),
+    ],
+)
+def test_noise_has_the_given_rms(more, rms_dps):
+    recording, _ = simulate(device(60, **more))
+    assert recording.gyro_dps().std() == pytest.approx(rms_dps, rel=0.05)
 
 
 def allan_deviation(values, m):
@@ -71,29 +71,10 @@ def allan_deviation(values, m):
     return np.sqrt((np.diff(means, axis=0) ** 2).mean() / 2)
 
 
-@pytest.mark.parametrize("m", [16, 64, 256, 1024])
+@pytest.mark.parametrize("m", [64, 1024])
 def test_flicker_keeps_the_allan_deviation_flat_at_the_given_floor(m):
     _, truth = simulate(device(24 * 60, 2.0, noise={"bias_instability_dps": 0.01}))
     assert allan_deviation(truth.bias_lsb / 1000, m) == pytest.approx(0.01, rel=0.25)
-
-
-def test_a_random_walk_starts_at_zero_and_spreads_with_the_root_of_time():
-    ends = []
-    for seed in range(60):
-        _, truth = simulate(device(10, 1.0, noise={"random_walk_dps": 0.003}), seed=seed)
-        assert (truth.bias_lsb[0] == 0).all()
-        ends.append(truth.bias_lsb[-1] / 1000)
-    assert np.std(ends) == pytest.approx(0.003 * np.sqrt(600), rel=0.2)
-
-
-def test_telegraph_noise_has_two_levels():
-    _, truth = simulate(device(noise={"telegraph_dps": 0.1, "telegraph_mean_s": 20.0}))
-    assert sorted(set((truth.bias_lsb[:, 0] / 1000).round(6))) == [-0.05, 0.05]
-
-
-def test_steeper_noise_has_the_given_rms():
-    _, truth = simulate(device(noise={"coloured_dps": [0.1, 0.2, 0.3], "coloured_exponent": 2.0}))
-    assert (truth.bias_lsb / 1000).std(axis=0) == pytest.approx([0.1, 0.2, 0.3], rel=1e-6)
 
 
 def test_outliers_are_in_the_reading_and_not_in_the_truth():
@@ -101,12 +82,6 @@ def test_outliers_are_in_the_reading_and_not_in_the_truth():
     recording, truth = simulate(device(60, noise=loud))
     assert (truth.bias_lsb == 0).all()
     assert 400 < (recording.columns["gx"] != 0).sum() < 800
-
-
-def test_a_louder_session_is_louder():
-    sessions = [{"noise_scale": 1.0}, {"noise_scale": 3.0}]
-    quiet, loud = simulate_sessions(device(sensor={"gyro_noise_dps": 0.05}, session=sessions))
-    assert loud[0].gyro_dps().std() == pytest.approx(3 * quiet[0].gyro_dps().std(), rel=0.05)
 
 
 @pytest.mark.parametrize("kind", ["swing", "stride", "wave", "hand"])
@@ -130,12 +105,6 @@ def _integrated(rate_dps, dt_s):
         now = now * turn
         out.append(now.as_quat(canonical=False)[[3, 0, 1, 2]])
     return np.array(out)
-
-
-def test_at_rest_the_accelerometer_sees_one_g_up():
-    for face, axis, sign in (("+z", 2, 1), ("-x", 0, -1), ("-z", 2, -1)):
-        recording, _ = simulate(device(every_session={"face": face}))
-        assert recording.accel_g().mean(axis=0)[axis] == pytest.approx(sign, abs=1e-3)
 
 
 def test_poses_put_each_face_up_in_turn():
@@ -162,14 +131,6 @@ def test_half_a_turn_of_heading_turns_the_share_of_earths_rate():
     assert truth.rate_dps[-1] == pytest.approx([0, -level, up])
     assert recording.scales.more["latitude_deg"] == 48.0
     assert truth.still[:1000].all()
-
-
-def test_vibration_shakes_the_accelerometer_at_any_rate_and_turns_nothing():
-    for odr_hz in (1.0, 100.0):
-        motion = [{"kind": "vibration", "s": 600, "g": 0.3}]
-        recording, truth = simulate(device(10, odr_hz, every_session={"motion": motion}))
-        assert recording.accel_g().std(axis=0) == pytest.approx([0.3] * 3, rel=0.15)
-        assert truth.still.all()
 
 
 def test_files_hold_the_recordings_and_the_truth_only_where_asked(tmp_path):
@@ -271,11 +232,3 @@ def test_the_warm_up_is_that_of_the_comparison(letter):
         assert (moving.std(axis=0) > 60).all()
         noise = recording.gyro_dps() - truth.rate_dps - truth.bias_lsb / 131
         assert noise.std() == pytest.approx(0.05, rel=0.02)
-
-
-def test_the_reference_names_every_entry_that_is_taken():
-    text = reference()
-    for name in ("gyro_noise_at_hz = none", "turntable", "late", "peak-temperature", "delay_s=0.0"):
-        assert name in text
-    for kinds in (MOTIONS, CHANNELS, EFFECTS):
-        assert set(kinds) <= {line.split()[0] for line in text.splitlines() if line.strip()}

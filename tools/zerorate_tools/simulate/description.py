@@ -10,31 +10,16 @@ from typing import Any
 
 from ..bounds import bytes_of
 from ..errors import BadDescription, MissingLibrary
+from . import schema
 from .channels import CHANNELS, seconds
 from .effects import EFFECTS, TIMING
 from .motion import FACES, MOTIONS
-from .schema import (
-    Bias,
-    Description,
-    Noise,
-    Sensor,
-    Session,
-    Table,
-    check_value,
-    filled,
-    is_number,
-    is_pair,
-    known,
-    table,
-    tables,
-)
+from .schema import Bias, Description, Noise, Sensor, Session, Table, Wrong
 
 _TOP = (
     *("name", "seed", "latitude_deg", "sensor", "bias", "noise", "every_session", "session"),
     *("sessions", "channels", "effect"),
 )
-
-
 _SEGMENT = ("to", "s", "minutes", "hours", "degc_per_min", "tau_s", "cycle", "period_minutes")
 _POSITIVE = ("s", "minutes", "hours", "degc_per_min", "tau_s", "period_minutes")
 _LONGEST_S = 366 * 86400.0
@@ -117,109 +102,113 @@ def _yaml(data: bytes) -> Any:
 
 
 def _from_table(top: Any, path: str) -> Description:
+    with schema.read_from(path):
+        return _checked(top, path)
+
+
+def _checked(top: Any, path: str) -> Description:
     if not isinstance(top, Mapping):
-        raise BadDescription(path, "no table of entries", do="see `zerorate simulate --entries`")
-    known(top, _TOP, "", path)
+        raise Wrong("no table of entries", "see `zerorate simulate --entries`")
+    schema.known(top, _TOP, "")
     description = Description(
-        sensor=filled(Sensor, top.get("sensor", {}), "sensor", path),
-        bias=filled(Bias, top.get("bias", {}), "bias", path),
-        noise=filled(Noise, top.get("noise", {}), "noise", path),
-        sessions=_sessions(top, path),
-        channels=_channels(top, path),
-        effects=_effects(top, path),
+        sensor=schema.filled(Sensor, top.get("sensor", {}), "sensor"),
+        bias=schema.filled(Bias, top.get("bias", {}), "bias"),
+        noise=schema.filled(Noise, top.get("noise", {}), "noise"),
+        sessions=_sessions(top),
+        channels=_channels(top),
+        effects=_effects(top),
         path=path,
-        **_scalars(top, path),
+        **_scalars(top),
     )
     for key in ("odr_hz", "gyro_lsb_per_dps", "temp_step_lsb"):
         if getattr(description.sensor, key) <= 0:
-            raise BadDescription(path, f"sensor.{key} is not above 0", do="write a number above 0")
+            raise Wrong(f"sensor.{key} is not above 0", "write a number above 0")
     for number, session in enumerate(description.sessions, start=1):
-        _check_session(session, f"session {number}", path)
+        _check_session(session, f"session {number}")
     return description
 
 
-def _sessions(top: Table, path: str) -> list[Session]:
-    every = table(top.get("every_session", {}), "every_session", path)
+def _sessions(top: Table) -> list[Session]:
+    every = schema.table(top.get("every_session", {}), "every_session")
     number = top.get("sessions", 1)
     if not isinstance(number, int) or not 1 <= number <= 10000:
-        raise BadDescription(path, f"sessions is {number!r}", do="write 1 or more")
-    given = tables(top.get("session", []), "session", path) or [{}] * number
-    return [filled(Session, {**every, **one}, "session", path) for one in given]
+        raise Wrong(f"sessions is {number!r}", "write 1 or more")
+    given = schema.tables(top.get("session", []), "session") or [{}] * number
+    return [schema.filled(Session, {**every, **one}, "session") for one in given]
 
 
-def _channels(top: Table, path: str) -> dict[str, Table]:
-    given = table(top.get("channels", {}), "channels", path)
-    return {name: table(one, f"channels.{name}", path) for name, one in given.items()}
+def _channels(top: Table) -> dict[str, Table]:
+    given = schema.table(top.get("channels", {}), "channels")
+    return {name: schema.table(one, f"channels.{name}") for name, one in given.items()}
 
 
-def _effects(top: Table, path: str) -> list[Table]:
-    given = tables(top.get("effect", []), "effect", path)
+def _effects(top: Table) -> list[Table]:
+    given = schema.tables(top.get("effect", []), "effect")
     for effect in given:
         kind = effect.get("kind")
         if kind == "timing":
-            known(effect, ("kind", *TIMING), "effect timing", path)
+            schema.known(effect, ("kind", *TIMING), "effect timing")
             for key in TIMING:
-                check_value(effect.get(key, 0.0), float, f"effect timing.{key}", path)
+                schema.check_value(effect.get(key, 0.0), float, f"effect timing.{key}")
         elif str(kind) not in EFFECTS:
-            do = f"choose of {', '.join(EFFECTS)}, timing"
-            raise BadDescription(path, f"effect {kind!r} is unknown", do=do)
+            raise Wrong(f"effect {kind!r} is unknown", f"choose of {', '.join(EFFECTS)}, timing")
     return given
 
 
-def _scalars(top: Table, path: str) -> dict[str, Any]:
+def _scalars(top: Table) -> dict[str, Any]:
     given = {key: top[key] for key in ("name", "seed", "latitude_deg") if key in top}
     if not isinstance(given.get("name", ""), str):
-        raise BadDescription(path, f"name is {given['name']!r}", do="write it in quotes")
+        raise Wrong(f"name is {given['name']!r}", "write it in quotes")
     seed = given.get("seed", 0)
     if not isinstance(seed, int) or seed < 0:
-        raise BadDescription(path, f"seed is {seed!r}", do="write an integer of 0 or more")
-    if not is_number(given.get("latitude_deg", 0)):
-        problem = f"latitude_deg is {given['latitude_deg']!r}"
-        raise BadDescription(path, problem, do="write degrees")
+        raise Wrong(f"seed is {seed!r}", "write an integer of 0 or more")
+    if not schema.is_number(given.get("latitude_deg", 0)):
+        raise Wrong(f"latitude_deg is {given['latitude_deg']!r}", "write degrees")
     return given
 
 
-def _check_session(session: Session, where: str, path: str) -> None:
+def _check_session(session: Session, where: str) -> None:
     if session.face not in FACES:
-        problem = f"{where}: face is {session.face!r}"
-        raise BadDescription(path, problem, do=f"choose of {', '.join(FACES)}")
+        raise Wrong(f"{where}: face is {session.face!r}", f"choose of {', '.join(FACES)}")
     for segment in session.temperature:
-        _check_segment(segment, f"{where}, temperature", path)
+        _check_segment(segment, f"{where}, temperature")
     for bout in session.motion:
-        _check_bout(bout, where, path)
+        _check_bout(bout, where)
     if not 0 < session.duration_s < _LONGEST_S:
-        raise BadDescription(path, f"{where} has no duration", do="add minutes = 60")
+        raise Wrong(f"{where} has no duration", "add minutes = 60")
 
 
-def _check_segment(segment: Table, where: str, path: str) -> None:
-    known(segment, _SEGMENT, where, path)
+def _check_segment(segment: Table, where: str) -> None:
+    schema.known(segment, _SEGMENT, where)
     for key, value in segment.items():
-        if not is_number(value) or (key in _POSITIVE and value <= 0):
-            do = "write a number above 0" if key in _POSITIVE else "write a number"
-            raise BadDescription(path, f"{where}: {key} is {value!r}", do=do)
+        if not schema.is_number(value) or (key in _POSITIVE and value <= 0):
+            above = " above 0" if key in _POSITIVE else ""
+            raise Wrong(f"{where}: {key} is {value!r}", f"write a number{above}")
     if "cycle" in segment and "period_minutes" not in segment:
-        raise BadDescription(path, f"{where}: a cycle has no period", do="add period_minutes = 20")
+        raise Wrong(f"{where}: a cycle has no period", "add period_minutes = 20")
     if seconds(segment) is None and not {"to", "degc_per_min"} <= set(segment):
-        raise BadDescription(path, f"{where}: a temperature has no duration", do="add minutes = 10")
+        raise Wrong(f"{where}: a temperature has no duration", "add minutes = 10")
 
 
-def _check_bout(bout: Table, where: str, path: str) -> None:
-    if str(bout.get("kind")) not in MOTIONS:
-        problem = f"{where}: motion {bout.get('kind')!r} is unknown"
-        raise BadDescription(path, problem, do=f"choose of {', '.join(MOTIONS)}")
+def _check_bout(bout: Table, where: str) -> None:
+    kind = bout.get("kind")
+    if str(kind) not in MOTIONS:
+        raise Wrong(f"{where}: motion {kind!r} is unknown", f"choose of {', '.join(MOTIONS)}")
     for key, value in bout.items():
-        if is_pair(value) and not (all(map(is_number, value)) and value[0] <= value[1]):
-            raise BadDescription(path, f"{where}: {key} is {value!r}", do="write [low, high]")
+        if schema.is_pair(value) and not (
+            all(map(schema.is_number, value)) and value[0] <= value[1]
+        ):
+            raise Wrong(f"{where}: {key} is {value!r}", "write [low, high]")
     lengths = [bout[key] for key in ("s", "minutes", "hours") if key in bout]
-    shortest = [value[0] if is_pair(value) else value for value in lengths]
-    if not lengths or not all(is_number(value) and value > 0 for value in shortest):
-        raise BadDescription(path, f"{where}: a motion has no duration", do="add s = 20")
+    shortest = [value[0] if schema.is_pair(value) else value for value in lengths]
+    if not lengths or not all(schema.is_number(value) and value > 0 for value in shortest):
+        raise Wrong(f"{where}: a motion has no duration", "add s = 20")
 
 
 def reference() -> str:
     """The entries of a description in plain text."""
-    tables = (("sensor", Sensor), ("bias", Bias), ("noise", Noise), ("every_session", Session))
-    parts = [_HEAD, *(_table(name, cls) for name, cls in tables)]
+    schemas = (("sensor", Sensor), ("bias", Bias), ("noise", Noise), ("every_session", Session))
+    parts = [_HEAD, *(_table(name, cls) for name, cls in schemas)]
     parts.append("motion = [{ kind = ... }]\n\n" + _kinds(MOTIONS))
     parts.append("[channels.NAME]\n" + _CHANNELS + _kinds(CHANNELS))
     parts.append("[[effect]]\n" + _EFFECTS + _kinds(EFFECTS))
@@ -245,11 +234,10 @@ def _kind(name: str, kind: Callable[..., Any]) -> str:
         for option in inspect.signature(kind).parameters.values()
         if option.kind is option.KEYWORD_ONLY
     ]
-    text = " ".join((inspect.getdoc(kind) or "").split())
-    head = textwrap.fill(
-        f"  {name:<18} {', '.join(options)}".rstrip(), 98, subsequent_indent=" " * 21
-    )
-    return f"{head}\n{textwrap.indent(textwrap.fill(text, 90), ' ' * 6)}\n"
+    head = f"  {name:<18} {', '.join(options)}".rstrip()
+    text = textwrap.fill(" ".join((inspect.getdoc(kind) or "").split()), 90)
+    filled_head = textwrap.fill(head, 98, subsequent_indent=" " * 21)
+    return f"{filled_head}\n{textwrap.indent(text, ' ' * 6)}\n"
 
 
 def _value(default: object) -> str:

@@ -13,7 +13,7 @@ from .channels import flicker, outliers, power_law, random_walk, stream, telegra
 from .description import load_description
 from .effects import RATE_EFFECTS, lagged
 from .scaling import coefficients, waveform
-from .schema import Description, Sensor, Table, axes
+from .schema import Description, Sensor, Table, axes, read_from
 from .world import World, build
 
 
@@ -73,9 +73,10 @@ def _sessions(
 ) -> Iterator[tuple[Recording, Truth]]:
     seed = described.seed if seed is None else seed
     everyone = (build(described, n + 1, seed) for n in range(len(described.sessions)))
-    per_unit = coefficients(described, everyone, seed)
-    for number in numbers:
-        yield _measured(described, build(described, number, seed), per_unit, seed)
+    with read_from(described.path):
+        per_unit = coefficients(described, everyone, seed)
+        for number in numbers:
+            yield _measured(described, build(described, number, seed), per_unit, seed)
 
 
 def _measured(
@@ -87,7 +88,7 @@ def _measured(
     for effect, coefficient in zip(described.effects, per_unit):
         if effect["kind"] == "timing":
             continue
-        added = waveform(world, effect, described.path) * coefficient
+        added = waveform(world, effect) * coefficient
         if effect["kind"] in RATE_EFFECTS:
             rate += added
         else:
@@ -138,7 +139,7 @@ def _surroundings(sensor: Sensor, world: World, rng: np.random.Generator) -> dic
     columns: dict[str, np.ndarray] = {}
     if sensor.accel:
         shaken = rng.standard_normal((n, 3)) * (sensor.accel_noise_g * quieter)
-        force = world.accel_g + shaken + axes(sensor.accel_bias_g, "sensor.accel_bias_g", "")
+        force = world.accel_g + shaken + axes(sensor.accel_bias_g)
         columns |= _counts("a", force * sensor.accel_lsb_per_g)
     if sensor.temp:
         read = lagged(world.temp_degc, sensor.temp_lag_s, world.dt_s)
@@ -174,13 +175,12 @@ def _scales(described: Description) -> Scales:
 
 
 def zero_rate_dps(described: Description, world: World, seed: int) -> np.ndarray:
-    """(n, 3) bias before any effect, dps, slow noise included. Raises BadDescription."""
-    bias, path = described.bias, described.path
+    """(n, 3) bias before any effect, dps, slow noise included."""
+    bias = described.bias
     warm = world.temp_degc[:, None] - 25
-    b = [axes(getattr(bias, f"b{i}"), f"bias.b{i}", path) for i in range(4)]
+    b = [axes(of) for of in (bias.b0, bias.b1, bias.b2, bias.b3)]
     total = b[0] + warm * (b[1] + warm * (b[2] + warm * b[3]))
-    turn_on = axes(bias.turn_on_dps, "bias.turn_on_dps", path)
-    total += turn_on * stream(seed, world.number, "turn-on").standard_normal(3)
+    total += axes(bias.turn_on_dps) * stream(seed, world.number, "turn-on").standard_normal(3)
     return total + _coloured(described, world, seed)
 
 
@@ -188,23 +188,15 @@ def _coloured(described: Description, world: World, seed: int) -> np.ndarray:
     n, dt_s, given = len(world.t_s), world.dt_s, described.noise
     louder = described.sessions[world.number - 1].noise_scale
     total = np.zeros((n, 3))
-
-    def size(key: str) -> np.ndarray:
-        return louder * axes(getattr(given, key), f"noise.{key}", described.path)
-
-    def rng(purpose: str) -> np.random.Generator:
-        return stream(seed, world.number, purpose)
-
-    if size("bias_instability_dps").any():
-        total += flicker(rng("flicker"), n, dt_s, size("bias_instability_dps"))
-    if size("random_walk_dps").any():
-        total += random_walk(rng("walk"), n, dt_s, size("random_walk_dps"))
-    if size("telegraph_dps").any():
-        jumps = size("telegraph_dps")
-        total += telegraph(rng("telegraph"), n, dt_s, jumps, given.telegraph_mean_s)
-    if size("coloured_dps").any():
-        rms = size("coloured_dps")
-        total += power_law(rng("coloured"), n, dt_s, rms, given.coloured_exponent)
+    for purpose, dps, noise, more in (
+        ("flicker", given.bias_instability_dps, flicker, ()),
+        ("walk", given.random_walk_dps, random_walk, ()),
+        ("telegraph", given.telegraph_dps, telegraph, (given.telegraph_mean_s,)),
+        ("coloured", given.coloured_dps, power_law, (given.coloured_exponent,)),
+    ):
+        size = louder * axes(dps)
+        if size.any():
+            total += noise(stream(seed, world.number, purpose), n, dt_s, size, *more)
     return total
 
 

@@ -148,23 +148,12 @@ def channel(
 
 
 EFFECTS: dict[str, Callable[..., np.ndarray]] = {
-    "hysteresis": hysteresis,
-    "prandtl-ishlinskii": prandtl_ishlinskii,
-    "thermal-rate": thermal_rate,
-    "sensor-lag": sensor_lag,
-    "power-on": power_on,
-    "drift": drift,
-    "kink": kink,
-    "peak-temperature": peak_temperature,
-    "linear-g": linear_g,
-    "squared-g": squared_g,
-    "vibration": vibration,
-    "supply": supply,
-    "supply-temperature": supply_temperature,
-    "scale": scale,
-    "periodic": periodic,
-    "step": step,
-    "channel": channel,
+    f.__name__.replace("_", "-"): f
+    for f in (
+        *(hysteresis, prandtl_ishlinskii, thermal_rate, sensor_lag, power_on, drift, kink),
+        *(peak_temperature, linear_g, squared_g, vibration, supply, supply_temperature, scale),
+        *(periodic, step, channel),
+    )
 }
 TIMING = ("delay_ms", "clock_ppm", "jitter_us")
 """Options of kind timing, which no waveform has."""

@@ -137,24 +137,20 @@ def body_axis(axis: object, start: Start) -> np.ndarray:
     if isinstance(axis, str):
         if axis in _AXES:
             return _AXES[axis]
-        vector = {"level": _level, "vertical": lambda s: s.up, "random": _random}[axis](start)
+        ways: dict[str, Callable[[Start], np.ndarray]] = {
+            "level": _level,
+            "vertical": lambda start: start.up,
+            "random": lambda start: start.rng.standard_normal(3),
+        }
+        vector = ways[axis](start)
     else:
         vector = np.asarray(axis, float)
     return vector / np.linalg.norm(vector)
 
 
-def face_up(face: str) -> np.ndarray:
-    """(3,) body direction of a face name such as +z."""
-    return FACES[face]
-
-
 def _level(start: Start) -> np.ndarray:
     along = _AXES["x"] if abs(start.up[0]) < 0.8 else _AXES["y"]
     return along - (along @ start.up) * start.up
-
-
-def _random(start: Start) -> np.ndarray:
-    return start.rng.standard_normal(3)
 
 
 def _envelope(start: Start) -> np.ndarray:

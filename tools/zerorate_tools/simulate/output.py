@@ -77,14 +77,15 @@ def write_truth(truth: Truth, path: str | PathLike[str]) -> None:
 def read_truth(path: str | PathLike[str]) -> Truth:
     """Read what `write_truth` wrote."""
     table = pq.read_table(path)
-    columns = {name: table[name].to_numpy() for name in table.column_names}
+
+    def stacked(*names: str) -> np.ndarray:
+        return np.stack([table[name].to_numpy() for name in names], axis=1)
+
     effects = json.loads(table.schema.metadata[b"zerorate-truth"])
     return Truth(
-        t_us=columns["t_us"],
-        bias_lsb=np.stack([columns[f"bias_g{axis}_lsb"] for axis in "xyz"], axis=1),
-        still=columns["still"],
-        attitude=np.stack([columns[name] for name in ATTITUDE], axis=1),
-        rate_dps=np.stack([columns[f"rate_g{axis}_dps"] for axis in "xyz"], axis=1),
-        temp_degc=columns["temp_degc"],
+        **{name: table[name].to_numpy() for name in ("t_us", "still", "temp_degc")},
+        bias_lsb=stacked(*(f"bias_g{axis}_lsb" for axis in "xyz")),
+        rate_dps=stacked(*(f"rate_g{axis}_dps" for axis in "xyz")),
+        attitude=stacked(*ATTITUDE),
         effects_dps=[np.array(per_unit) for per_unit in effects],
     )

@@ -8,10 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import BadDescription
 from .channels import stream
 from .effects import EFFECTS, RATE_EFFECTS
-from .schema import Description, axes
+from .schema import Description, Wrong, axes
 from .world import World
 
 _ALWAYS = ("kind", "dps", "rms_dps", "beyond_temperature", "session")
@@ -20,8 +19,8 @@ _NOTHING = 1e-12
 
 
 @np.errstate(over="ignore", invalid="ignore")
-def waveform(world: World, effect: Mapping[str, Any], path: str) -> np.ndarray:
-    """(n, 3) an effect's waveform per unit of coefficient. Raises BadDescription."""
+def waveform(world: World, effect: Mapping[str, Any]) -> np.ndarray:
+    """(n, 3) an effect's waveform per unit of coefficient. Raises Wrong."""
     options = {k: v for k, v in effect.items() if k not in _ALWAYS}
     kind = effect["kind"]
     if effect.get("session", world.number) != world.number:
@@ -31,10 +30,10 @@ def waveform(world: World, effect: Mapping[str, Any], path: str) -> np.ndarray:
         if not np.isfinite(shape).all():
             raise ValueError("what it follows or how is not finite")
     except KeyError as error:
-        problem = f"effect {kind}: there is no channel {error}"
-        raise BadDescription(path, problem, do=f"add [channels.{error.args[0]}]") from error
+        do = f"add [channels.{error.args[0]}]"
+        raise Wrong(f"effect {kind}: there is no channel {error}", do) from error
     except (TypeError, ValueError, ArithmeticError) as error:
-        raise BadDescription(path, f"effect {kind}: {error}", do="correct it") from error
+        raise Wrong(f"effect {kind}: {error}", "correct it") from error
     return shape if shape.ndim == 2 else np.repeat(shape[:, None], 3, axis=1)
 
 
@@ -51,30 +50,26 @@ def coefficients(description: Description, worlds: Iterable[World], seed: int) -
     sized = [i for i, effect in enumerate(description.effects) if "rms_dps" in effect]
     sizes = dict(zip(sized, _sizes(description, sized, worlds))) if sized else {}
     return [
-        _from_size(description, i, sizes[i], seed) if i in sizes else _given(description, effect)
+        _from_size(effect, i, sizes[i], seed)
+        if i in sizes
+        else axes(effect.get("dps", 0.0), f"effect {effect.get('kind')}.dps")
         for i, effect in enumerate(description.effects)
     ]
 
 
-def _given(description: Description, effect: Mapping[str, Any]) -> np.ndarray:
-    return axes(effect.get("dps", 0.0), f"effect {effect.get('kind')}.dps", description.path)
-
-
-def _from_size(description: Description, number: int, size: _Size, seed: int) -> np.ndarray:
-    effect = description.effects[number]
+def _from_size(effect: Mapping[str, Any], number: int, size: _Size, seed: int) -> np.ndarray:
     where = f"effect {effect['kind']}"
-    wanted = axes(effect["rms_dps"], f"{where}.rms_dps", description.path)
+    wanted, rms = axes(effect["rms_dps"], f"{where}.rms_dps"), size.rms
     if not isinstance(effect["rms_dps"], (list, tuple)):
         if not size.shared:
-            size.rms = np.full(3, np.sqrt((size.rms**2).mean()))
+            rms = np.full(3, np.sqrt((rms**2).mean()))
         else:
             direction = stream(seed, 0, f"effect {number}").standard_normal(3)
             wanted = wanted * direction / np.sqrt((direction**2).mean())
-    shows = size.rms > _NOTHING
+    shows = rms > _NOTHING
     if (wanted[~shows] != 0).any():
-        do = "vary what it follows"
-        raise BadDescription(description.path, f"{where} does not show in these sessions", do=do)
-    return np.where(shows, wanted / np.where(shows, size.rms, 1.0), 0.0)
+        raise Wrong(f"{where} does not show in these sessions", "vary what it follows")
+    return np.where(shows, wanted / np.where(shows, rms, 1.0), 0.0)
 
 
 @dataclass
@@ -93,7 +88,7 @@ def _sizes(description: Description, sized: list[int], worlds: Iterable[World]) 
         for effect, shape, temp in zip(effects, shapes, temps):
             at = _scored(world, effect)
             warm = world.temp_degc[at, None]
-            shape.append(_about_mean(waveform(world, effect, description.path)[at]))
+            shape.append(_about_mean(waveform(world, effect)[at]))
             temp.append(_about_mean(np.hstack([warm, warm**2])))
     return [
         _size(effect, *map(np.concatenate, both)) for effect, *both in zip(effects, shapes, temps)

@@ -1,7 +1,8 @@
 """The entries of a simulated device's description, with their units, and what each must be."""
 
 import sys
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field, fields
 from typing import Any, get_origin
 
@@ -113,55 +114,72 @@ class Description:
     path: str = "description"
 
 
-def table(value: Any, where: str, path: str) -> Table:
+class Wrong(Exception):
+    """What is wrong with an entry of a description, and what to do about it."""
+
+    def __init__(self, problem: str, do: str) -> None:
+        super().__init__(problem)
+        self.problem, self.do = problem, do
+
+
+@contextmanager
+def read_from(path: str) -> Iterator[None]:
+    """Say what is Wrong of a description as a BadDescription, with its file."""
+    try:
+        yield
+    except Wrong as wrong:
+        raise BadDescription(path, wrong.problem, do=wrong.do) from wrong
+
+
+def table(value: Any, where: str) -> Table:
     """The value, which must be a table."""
     if not isinstance(value, Mapping):
-        raise BadDescription(path, f"{where} is no table", do=f"write [{where}]")
+        raise Wrong(f"{where} is no table", f"write [{where}]")
     return value
 
 
-def tables(value: Any, where: str, path: str) -> list[Table]:
+def tables(value: Any, where: str) -> list[Table]:
     """The value, which must be a list of tables."""
     if not isinstance(value, (list, tuple)):
-        raise BadDescription(path, f"{where} is no list of tables", do=f"write [[{where}]]")
-    return [table(entry, where, path) for entry in value]
+        raise Wrong(f"{where} is no list of tables", f"write [[{where}]]")
+    return [table(entry, where) for entry in value]
 
 
-def filled(cls: type, given: Any, where: str, path: str) -> Any:
+def filled(cls: type, given: Any, where: str) -> Any:
     """A dataclass of the schema filled from a table, each value of its kind."""
-    entries = table(given, where, path)
+    entries = table(given, where)
     kinds = {f.name: f.type for f in fields(cls)}
-    known(entries, tuple(kinds), where, path)
+    known(entries, tuple(kinds), where)
     for key, value in entries.items():
-        check_value(value, kinds[key], f"{where}.{key}", path)
+        check_value(value, kinds[key], f"{where}.{key}")
     return cls(**entries)
 
 
-def check_value(value: Any, wanted: Any, where: str, path: str) -> None:
-    """Raise BadDescription unless the value is of the wanted type (Any: one number or 3)."""
+def check_value(value: Any, wanted: Any, where: str) -> None:
+    """Raise Wrong unless the value is of the wanted type (Any: one number or 3)."""
     if wanted is Any:
-        axes(value, where, path)
+        axes(value, where)
     elif get_origin(wanted) is list:
-        tables(value, where, path)
+        tables(value, where)
     elif wanted in (float, float | None) and not is_number(value):
-        raise BadDescription(path, f"{where} is {value!r}", do="write a number")
+        raise Wrong(f"{where} is {value!r}", "write a number")
     elif wanted in (str, bool) and type(value) is not wanted:
-        raise BadDescription(path, f"{where} is {value!r}", do=f"write a {wanted.__name__}")
+        raise Wrong(f"{where} is {value!r}", f"write a {wanted.__name__}")
 
 
-def known(entries: Table, names: tuple[str, ...], where: str, path: str) -> None:
-    """Raise BadDescription at the first entry that is none of `names`."""
+def known(entries: Table, names: tuple[str, ...], where: str) -> None:
+    """Raise Wrong at the first entry that is none of `names`."""
     for key in entries:
         if key not in names:
             place = f"{where}.{key}" if where else str(key)
-            raise BadDescription(path, f"{place} is unknown", do=f"choose of {', '.join(names)}")
+            raise Wrong(f"{place} is unknown", f"choose of {', '.join(names)}")
 
 
-def axes(value: Any, where: str, path: str) -> np.ndarray:
-    """(3,) x y z out of one number or three. Raises BadDescription."""
+def axes(value: Any, where: str = "") -> np.ndarray:
+    """(3,) x y z out of one number or three. Raises Wrong."""
     values = value if isinstance(value, (list, tuple, np.ndarray)) else [value] * 3
     if len(values) != 3 or not all(is_number(v) for v in values):
-        raise BadDescription(path, f"{where} is {value!r}", do="write one number or [x, y, z]")
+        raise Wrong(f"{where} is {value!r}", "write one number or [x, y, z]")
     return np.array([float(v) for v in values])
 
 

@@ -1,16 +1,15 @@
 """What truly happens around the sensor in one session, before any of it is measured."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from ..errors import BadDescription
 from .attitude import facing, integrate, into_body, multiply, rotation
 from .channels import CHANNELS, Channel, Clock, durations, path, seconds, stream
-from .motion import MOTIONS, Start, face_up
-from .schema import Description, Session, is_pair
+from .motion import FACES, MOTIONS, Bout, Start
+from .schema import Description, Session, Wrong, is_pair
 
 _EARTH_DPS = 360 / 86164.0905
 _MOST_SAMPLES = 10**8
@@ -35,14 +34,14 @@ class World:
 
 @np.errstate(over="ignore", invalid="ignore")  # it is looked at what came of it
 def build(description: Description, number: int, seed: int) -> World:
-    """The world of session `number` (1-based). Raises BadDescription."""
+    """The world of session `number` (1-based). Raises Wrong."""
     session = description.sessions[number - 1]
     dt_s = 1.0 / description.sensor.odr_hz
     session, lengths = _varied(session, stream(seed, number, "temperature"))
     duration_s = session.s + 60 * session.minutes + 3600 * session.hours or sum(lengths)
     if duration_s > _MOST_SAMPLES * dt_s:
-        problem = f"session {number} has over {_MOST_SAMPLES:,} samples"
-        raise BadDescription(description.path, problem, do="make it shorter, or odr_hz smaller")
+        do = "make it shorter, or odr_hz smaller"
+        raise Wrong(f"session {number} has over {_MOST_SAMPLES:,} samples", do)
     n = max(int(round(duration_s / dt_s)), 1)
     t_s = np.arange(n) * dt_s
     temp = path(t_s, session.start_degc, session.temperature, lengths)
@@ -53,7 +52,7 @@ def build(description: Description, number: int, seed: int) -> World:
     world = World(number, t_s, dt_s, temp, rate, accel, attitude, still, {})
     for name, table in description.channels.items():
         rng = stream(seed, number, f"channel {name}")
-        world.channels[name] = _channel(world, name, table, rng, description.path)
+        world.channels[name] = _channel(world, name, table, rng)
     return world
 
 
@@ -72,7 +71,7 @@ def _varied(session: Session, rng: np.random.Generator) -> tuple[Session, list[f
     ]
     lengths = durations(session.start_degc, session.temperature)
     factors = np.exp(session.vary_time * rng.standard_normal(len(lengths)))
-    varied = Session(**{**vars(session), "start_degc": start, "temperature": segments})
+    varied = replace(session, start_degc=start, temperature=segments)
     return varied, [length * factor for length, factor in zip(lengths, factors)]
 
 
@@ -87,7 +86,7 @@ def _moved(
         bout = _drawn(schedule[turn % len(schedule)], rng)
         last = min(first + max(int(round((seconds(bout) or 0.0) / dt_s)), 1), n)
         start = Start(rng, np.arange(1, last - first + 1) * dt_s, dt_s, into_body(now, UP))
-        moved = _bout(bout, start, description.path)
+        moved = _bout(bout, start)
         rate[first:last] = moved.rate_dps
         if moved.push_g is not None:
             push[first:last] = moved.push_g
@@ -100,14 +99,14 @@ def _moved(
 def _first_attitude(session: Session, rng: np.random.Generator) -> np.ndarray:
     lean = rng.standard_normal(3) * session.tilt_deg
     heading = rotation(np.array([0.0, 0.0, session.heading_deg]))
-    return multiply(heading, multiply(facing(face_up(session.face)), rotation(lean)))
+    return multiply(heading, multiply(facing(FACES[session.face]), rotation(lean)))
 
 
 def _drawn(bout: Mapping[str, Any], rng: np.random.Generator) -> dict[str, Any]:
     return {key: rng.uniform(*value) if is_pair(value) else value for key, value in bout.items()}
 
 
-def _bout(bout: dict[str, Any], start: Start, path: str) -> Any:
+def _bout(bout: dict[str, Any], start: Start) -> Bout:
     options = {k: v for k, v in bout.items() if k not in ("kind", "s", "minutes", "hours")}
     try:
         moved = MOTIONS[bout["kind"]](start, **options)
@@ -115,11 +114,11 @@ def _bout(bout: dict[str, Any], start: Start, path: str) -> Any:
             raise ValueError("its rates are not three finite numbers a sample")
         return moved
     except (TypeError, KeyError, ValueError, ArithmeticError) as error:
-        raise BadDescription(path, f"motion {bout['kind']}: {error}", do="correct it") from error
+        raise Wrong(f"motion {bout['kind']}: {error}", "correct it") from error
 
 
 def _channel(
-    world: World, name: str, table: Mapping[str, Any], rng: np.random.Generator, path: str
+    world: World, name: str, table: Mapping[str, Any], rng: np.random.Generator
 ) -> Channel:
     options = dict(table)
     how = {key: options.pop(key) for key in ("recorded", "lsb", "noise") if key in options}
@@ -133,4 +132,4 @@ def _channel(
         return Channel(values, **how)
     except (TypeError, KeyError, ValueError, ArithmeticError) as error:
         do = f"choose kind of {', '.join(CHANNELS)}, copy, and its options"
-        raise BadDescription(path, f"channel {name}: {error}", do=do) from error
+        raise Wrong(f"channel {name}: {error}", do) from error
