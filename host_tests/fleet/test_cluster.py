@@ -18,14 +18,7 @@ from distributed import Client
 from zerorate_tools.cli import main
 from zerorate_tools.errors import MissingLibrary, ZerorateError
 from zerorate_tools.fleet import devices_of, fleet
-from zerorate_tools.fleet.cluster import (
-    _check_workers,
-    _each,
-    _safe_path,
-    cluster,
-    run_all,
-    size_of,
-)
+from zerorate_tools.fleet.cluster import _each, _safe_path, cluster, run_all
 from zerorate_tools.fleet.devices import here, size_and_change, urls_of
 from zerorate_tools.recordings import read_recording, write_recording
 
@@ -245,23 +238,6 @@ def test_a_cluster_is_given_up_ten_seconds_after_its_last_worker(monkeypatch, wo
     with pytest.raises(ZerorateError, match=said) if said else nullcontext():
         assert list(_each(client, client, ["a", "c"])) == [_ENDED]
     assert list(client.workers) == [] and (said or client.ends == [])
-
-
-@pytest.mark.parametrize(
-    ("answer", "said"),
-    [("", ""), ("numpy", "x: worker b lacks numpy; pip"), (OSError(), "worker b does not answer")],
-)
-def test_each_worker_is_asked_what_it_lacks(answer, said):
-    def run(function, text, workers, callback_timeout):
-        (name,) = workers
-        if name == "b" and isinstance(answer, OSError):
-            raise answer
-        return {name: answer if name == "b" else function(text)}
-
-    client = SimpleNamespace(nthreads=lambda: {"a": 1, "b": 2}, run=run)
-    assert size_of(client) == 3 and size_of(SimpleNamespace(nthreads=dict)) == 1
-    with pytest.raises(ZerorateError, match=said) if said else nullcontext():
-        _check_workers(client, "x")
 
 
 @pytest.fixture

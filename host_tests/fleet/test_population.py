@@ -10,7 +10,7 @@ from zerorate_tools.errors import ZerorateError
 from zerorate_tools.fleet import Device, devices_of
 from zerorate_tools.fleet.cluster import in_batches
 from zerorate_tools.fleet.part import curve_effects, part_of
-from zerorate_tools.fleet.plots import headline, write_page
+from zerorate_tools.fleet.plots import write_page
 from zerorate_tools.fleet.population import PER_DEGC, Curve, curve_of, population
 from zerorate_tools.loop.read.sessions import Session
 
@@ -172,39 +172,21 @@ def test_large_recordings_make_small_batches(tmp_path):
 HOSTILE = "<script>document.title='taken'</script>"
 
 
-@pytest.fixture
-def hostile(done, tmp_path):
-    """The page of a fleet whose files and devices have names that strangers chose."""
+def test_names_of_strangers_are_only_names(done, tmp_path):
     report = copy.deepcopy(done[0].report)
     report["failures"] = [{"device": HOSTILE, "file": HOSTILE, "reason": HOSTILE}]
     report["worst"][0]["device"] = HOSTILE
     report["effects"][0]["unusual_devices"] = [HOSTILE]
     write_page(report, None, tmp_path / "fleet.html")
-    return tmp_path / "fleet.html"
-
-
-def test_the_page_says_what_the_prior_is_worth(done):
-    found = done[0].report["prior"]["benefit"]["scenarios"]["at-rest-for-10-s"]
-    assert found["prior"]["median_mdps"] < found["without"]["median_mdps"]
-    assert f"{found['prior']['median_mdps']:.1f}" in headline(done[0].report)
-    assert headline(done[0].report) in (done[1] / "fleet.html").read_text()
-
-
-def test_names_of_strangers_are_only_names(hostile):
-    text = hostile.read_text()
+    text = (tmp_path / "fleet.html").read_text()
     assert HOSTILE not in text
     assert text.count("&lt;script&gt;document.title") >= 3
 
 
 def test_a_fleet_too_small_for_a_part_has_a_page_too(tmp_path):
     report = {"devices": 1, "sessions": 0, "hours": 0.0, "sensor": None, "effects": [], "steps": []}
-    report |= {
-        "job": "replay",
-        "prior": None,
-        "worst": [],
-        "failures": [],
-        "left_out_of_the_part": [],
-    }
+    report |= {"job": "replay", "prior": None, "worst": [], "failures": []}
+    report |= {"left_out_of_the_part": []}
     write_page(report, None, tmp_path / "fleet.html")
     assert "it takes five devices" in (tmp_path / "fleet.html").read_text()
 

@@ -44,17 +44,16 @@ def devices_of(
     """Group recordings by device, both in the order of their names (2 before 10).
 
     sources: files, glob patterns, or folders, which are searched, here or at a URL that fsspec
-    knows (s3://bucket/folder); device_from: a regular
-    expression whose first group, found in a file's path, names its device; without it a folder
-    `device=NAME` on the path does, else each file is a device of its own. without: a folder that
-    is left out. Raises ZerorateError.
+    knows (s3://bucket/folder); device_from: a regular expression whose first group, found in a
+    file's path, names its device; without it a folder `device=NAME` on the path does, else each
+    file is a device of its own. without: a folder that is left out. Raises ZerorateError.
     """
     pattern = _compiled(device_from)
     found: dict[str, list[str]] = {}
     named = [str(source) for source in sources]
     here = [source for source in named if not is_url(source)]
     urls = [url for source in named if is_url(source) for url in urls_of(source)]
-    files = [str(path) for path in _files(here, Path(realpath(without)) if without else None)]
+    files = _files(here, Path(realpath(without)) if without else None)
     for name in dict.fromkeys([*files, *urls]):
         found.setdefault(_device(PurePosixPath(name), pattern), []).append(name)
     return [
@@ -75,34 +74,33 @@ def _compiled(device_from: str | None) -> re.Pattern[str] | None:
     return pattern
 
 
-def _files(sources: Iterable[str | PathLike[str]], without: Path | None) -> Iterator[Path]:
-    seen: set[Path] = set()
+def _files(sources: Iterable[str], without: Path | None) -> list[str]:
+    """The recordings of this machine, each once, in the order of the sources."""
+    found: dict[Path, Path] = {}
     for source in sources:
-        some = False
-        for path in _expanded(str(source)):
-            real = path.resolve()
-            if without is not None and without in real.parents:
-                continue
-            some = True
-            if real not in seen:
-                seen.add(real)
-                yield path
-        if not some:
-            do = "name recordings (.parquet, .csv, .csv.gz), a pattern or a folder of them"
-            raise ZerorateError(f"{source}: no recording there; {do}")
+        there = [path for path in _expanded(source) if without not in path.resolve().parents]
+        if not there:
+            raise _nothing_at(source)
+        for path in there:
+            found.setdefault(path.resolve(), path)
+    return [str(path) for path in found.values()]
 
 
-def _expanded(source: str) -> list[Path]:
-    path = Path(source)
-    if path.is_dir():
-        return [p for p in path.rglob("*") if _is_recording(p)]
-    if has_magic(source) and not path.exists():
-        return [p for place in sorted(glob(source, recursive=True)) for p in _in_place(Path(place))]
-    return [path] if path.exists() else []
+def _nothing_at(source: str) -> ZerorateError:
+    do = "name recordings (.parquet, .csv, .csv.gz), a pattern or a folder of them"
+    return ZerorateError(f"{source}: no recording there; {do}")
 
 
-def _in_place(path: Path) -> list[Path]:
-    return [path] if path.is_file() else _expanded(str(path))
+def _expanded(source: str) -> Iterator[Path]:
+    """A file, what matches a pattern, and what of them are folders searched."""
+    places = [Path(source)]
+    if has_magic(source) and not places[0].exists():
+        places = [Path(place) for place in sorted(glob(source, recursive=True))]
+    for place in places:
+        if place.is_dir():
+            yield from filter(_is_recording, place.rglob("*"))
+        elif place.exists():
+            yield place
 
 
 def _is_recording(path: Path) -> bool:
@@ -143,8 +141,7 @@ def urls_of(source: str) -> list[str]:
         raise ZerorateError(f"{source}: {_in_words(error)}") from error
     found = [one for one in sorted(found) if one.endswith((*CSV, *PARQUET))]
     if not found:
-        do = "name recordings (.parquet, .csv, .csv.gz), a pattern or a folder of them"
-        raise ZerorateError(f"{source}: no recording there; {do}")
+        raise _nothing_at(source)
     return [store.unstrip_protocol(one) for one in found]
 
 

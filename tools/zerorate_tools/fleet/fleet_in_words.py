@@ -36,71 +36,41 @@ def table_of(results: Sequence[dict[str, Any]], part: Part | None) -> pa.Table:
     where there is one (at the same 25 degC); for effects of `close` the rms that it takes away.
     p_value: of being no more unusual than the others are, or that of the step.
     """
-    of_part = _curve_rows(part) if part is not None else {}
+    numbers = {name: i for i, name in enumerate(part.names)} if part is not None else {}
     rows = []
     for result in results:
-        name = result["device"]
-        curve = Curve.from_json(result["curve"]) if result["curve"] else None
-        own = of_part.get(name) or (_lone_rows(name, curve) if curve is not None else [])
-        for row in [*own, *_step_rows(result)]:
-            rows.append({**row, "sessions": len(result["sessions"])})
+        steps = [_step_row(step) for step in result["steps"]]
+        number = numbers.get(result["device"])
+        if part is not None and number is not None:
+            p = part.p_unusual[number]
+            steps[:0] = _curve_rows(part.curves[number], part.own[number], p)
+        elif result["curve"]:
+            steps[:0] = _curve_rows(Curve.from_json(result["curve"]))
+        of_all = {"device": result["device"], "sessions": len(result["sessions"])}
+        rows += [{**of_all, **row} for row in steps]
     return pa.Table.from_pylist(rows, SCHEMA)
 
 
-def _curve_rows(part: Part) -> dict[str, list[dict[str, Any]]]:
-    fits = [alone(part, axis) for axis in range(3)]
-    own = np.stack([axis.own for axis in part.axes], axis=1) @ part.to_centre.T
-    p = np.min([axis.p_unusual for axis in part.axes], axis=0)
-    found: dict[str, list[dict[str, Any]]] = {}
-    for i, (name, curve) in enumerate(zip(part.names, part.curves)):
-        values, errors = (np.stack([t[k][i] for t in fits]) for k in (0, 1))
-        rows = _rows(name, curve, values, errors, own[i])
-        for row in rows:
-            term = TERMS.index(row["effect"])
-            row.update(p_value=float(p[i, term]), unusual=bool(p[i, term] < 0.05))
-        found[name] = rows
-    return found
-
-
-def _lone_rows(name: str, curve: Curve) -> list[dict[str, Any]]:
-    covariance = np.linalg.inv(curve.information)
-    values = np.einsum("aij,aj->ai", covariance, curve.score)
-    errors = np.sqrt(covariance.diagonal(axis1=1, axis2=2))
-    return _rows(name, curve, values, errors, np.full((3, 3), np.nan))
-
-
-def _rows(
-    name: str, curve: Curve, values: NDArray[Any], errors: NDArray[Any], own: NDArray[Any]
+def _curve_rows(
+    curve: Curve, own: NDArray[Any] | None = None, p: NDArray[Any] | None = None
 ) -> list[dict[str, Any]]:
-    """values, errors, own: (3 axes, 3 terms)."""
-    return [
-        {
-            "device": name,
-            "effect": term,
-            "kind": "curve",
-            "unit": UNITS[k],
-            **_by_axis("value", values[:, k] * scale_of(k)),
-            **_by_axis("error", errors[:, k] * scale_of(k)),
-            **_by_axis("own", own[:, k] * scale_of(k)),
-        }
-        for k, term in enumerate(TERMS)
-        if term in curve.shown
-    ]
+    """A row a term that the curve shows; own (3 axes, 3 terms), p (3 terms): of one of a part."""
+    values, errors = (of[0] for of in alone([curve]))
+    own = np.full((3, 3), np.nan) if own is None else own
+    rows = []
+    for k, term in enumerate(TERMS):
+        row: dict[str, Any] = {"effect": term, "kind": "curve", "unit": UNITS[k]}
+        for name, of in (("value", values), ("error", errors), ("own", own)):
+            row |= _by_axis(name, of[:, k] * scale_of(k))
+        if p is not None:
+            row.update(p_value=float(p[k]), unusual=bool(p[k] < 0.05))
+        rows.append(row)
+    return [row for row in rows if row["effect"] in curve.shown]
 
 
-def _step_rows(result: dict[str, Any]) -> list[dict[str, Any]]:
-    return [
-        {
-            "device": result["device"],
-            "effect": step["effect"],
-            "kind": "close",
-            "unit": "mdps",
-            **_by_axis("value", removed_mdps(step)),
-            "p_value": step["p_value"],
-            "confidence": step["confidence"],
-        }
-        for step in result["steps"]
-    ]
+def _step_row(step: dict[str, Any]) -> dict[str, Any]:
+    told = {name: step[name] for name in ("effect", "p_value", "confidence")}
+    return {**told, "kind": "close", "unit": "mdps", **_by_axis("value", removed_mdps(step))}
 
 
 def _by_axis(name: str, values: Iterable[float]) -> dict[str, float | None]:

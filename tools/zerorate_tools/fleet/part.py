@@ -42,6 +42,16 @@ class Part:
         """(3, 3) that takes coefficients at the reference to those at 25 degC, exactly."""
         return np.linalg.inv(_moved(self.reference_degc))
 
+    @property
+    def own(self) -> np.ndarray:
+        """(n, 3 axes, 3 terms) each device's shrunken coefficients at 25 degC."""
+        return np.stack([axis.own for axis in self.axes], axis=1) @ self.to_centre.T
+
+    @property
+    def p_unusual(self) -> np.ndarray:
+        """(n, 3 terms) of the axis that lies furthest from the others."""
+        return np.min([axis.p_unusual for axis in self.axes], axis=0)
+
     def at(self, degc: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Mean curve and its deviation between devices, (n, 3) dps each, at temperatures (n,)."""
         basis = np.vander((np.asarray(degc, float) - self.reference_degc) * PER_DEGC, 3, True)
@@ -90,24 +100,22 @@ def curve_effects(part: Part) -> list[dict[str, Any]]:
         if not any(name in c.shown for c in part.curves):
             continue
         scale = scale_of(term)
-        p_mean = [min(1.0, 9 * float(axis.p_mean()[term])) for axis in part.axes]
-        differ = [_differ(part, a, term) for a in range(3)]
-        p_differ = [min(1.0, 9 * p) for p, _ in differ]
-        beyond = [share for _, share in differ]
-        mean = [float(axis.mean[term] * scale) for axis in part.axes]
-        deviation = [float(axis.deviation[term] * scale) for axis in part.axes]
-        rows = zip(p_mean, p_differ, beyond, mean, deviation)
+        of_axes = [
+            {
+                "mean": float(axis.mean[term] * scale),
+                "ci95": (axis.interval()[term] * scale).tolist(),
+                "deviation_between_devices": float(axis.deviation[term] * scale),
+                "p_mean": min(1.0, 9 * float(axis.p_mean()[term])),
+                **_differ(part, number, term),
+            }
+            for number, axis in enumerate(part.axes)
+        ]
         effects.append(
             {
                 "effect": name,
                 "unit": unit,
-                "mean": mean,
-                "ci95": [(axis.interval()[term] * scale).tolist() for axis in part.axes],
-                "deviation_between_devices": deviation,
-                "p_mean": p_mean,
-                "p_devices_differ": p_differ,
-                "share_beyond_noise": beyond,
-                "verdict": [_verdict(*row) for row in rows],
+                **{key: [of[key] for of in of_axes] for key in of_axes[0]},
+                "verdict": [_verdict(of) for of in of_axes],
                 "devices": sum(name in c.shown for c in part.curves),
                 "unusual_devices": _unusual(part, term),
             }
@@ -115,45 +123,43 @@ def curve_effects(part: Part) -> list[dict[str, Any]]:
     return effects
 
 
-def _verdict(
-    p_mean: float, p_differ: float, beyond_noise: float, mean: float, deviation: float
-) -> str:
-    if p_mean < _SHOWN:
-        return "common" if abs(mean) > deviation else "common, and by device"
+def _verdict(of: dict[str, Any]) -> str:
+    if of["p_mean"] < _SHOWN:
+        larger = abs(of["mean"]) > of["deviation_between_devices"]
+        return "common" if larger else "common, and by device"
     # slow noise of one power-on looks like a curve, and an error told by it alone is too small
-    return "by device" if p_differ < _SHOWN and beyond_noise > _MOSTLY else "not shown"
+    differ = of["p_devices_differ"] < _SHOWN and of["share_beyond_noise"] > _MOSTLY
+    return "by device" if differ else "not shown"
 
 
-def _differ(part: Part, axis: int, term: int) -> tuple[float, float]:
-    """Cochran's Q: probability of devices so different by noise alone, and the share beyond it."""
-    rows = [i for i, c in enumerate(part.curves) if TERMS[term] in c.shown]
-    if len(rows) < 2:
-        return 1.0, 0.0
-    values, errors = alone(part, axis)
-    weight = errors[rows, term] ** -2.0
-    mean = (weight * values[rows, term]).sum() / weight.sum()
-    q = (weight * (values[rows, term] - mean) ** 2).sum()
-    expected = len(rows) - 1
-    return float(stats.chi2.sf(q, expected)), float(1 - expected / max(q, expected))
+def _differ(part: Part, axis: int, term: int) -> dict[str, float]:
+    """Cochran's Q: probability of devices so different by noise alone (of nine such tests), and
+    the share of their variance beyond it."""
+    curves = [c for c in part.curves if TERMS[term] in c.shown]
+    if len(curves) < 2:
+        return {"p_devices_differ": 1.0, "share_beyond_noise": 0.0}
+    values, errors = (of[:, axis, term] for of in alone(curves))
+    weight = errors**-2.0
+    mean = (weight * values).sum() / weight.sum()
+    q = (weight * (values - mean) ** 2).sum()
+    expected = len(curves) - 1
+    return {
+        "p_devices_differ": min(1.0, 9 * float(stats.chi2.sf(q, expected))),
+        "share_beyond_noise": float(1 - expected / max(q, expected)),
+    }
 
 
-def alone(part: Part, axis: int) -> tuple[np.ndarray, np.ndarray]:
-    """(n, 3) coefficients at the centre as each device alone tells them, and standard errors."""
-    information = np.stack([c.information[axis] for c in part.curves])
-    score = np.stack([c.score[axis] for c in part.curves])
-    covariance = np.linalg.inv(information)
-    values = np.einsum("nij,nj->ni", covariance, score)
-    return values, np.sqrt(covariance.diagonal(axis1=1, axis2=2))
+def alone(curves: Sequence[Curve]) -> tuple[np.ndarray, np.ndarray]:
+    """(n, 3 axes, 3 terms) coefficients at 25 degC as each device alone tells them, and errors."""
+    covariance = np.linalg.inv(np.stack([c.information for c in curves]))
+    values = np.einsum("naij,naj->nai", covariance, np.stack([c.score for c in curves]))
+    return values, np.sqrt(covariance.diagonal(axis1=2, axis2=3))
 
 
 def _unusual(part: Part, term: int) -> list[str]:
     """Devices that differ from all others, for which nothing common explains them."""
-    p = np.min([axis.p_unusual[:, term] for axis in part.axes], axis=0)
-    return [
-        name
-        for name, curve, value in zip(part.names, part.curves, p)
-        if value < _SHOWN and TERMS[term] in curve.shown
-    ]
+    rows = zip(part.names, part.curves, part.p_unusual[:, term])
+    return [name for name, curve, p in rows if p < _SHOWN and TERMS[term] in curve.shown]
 
 
 def step_effects(results: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
