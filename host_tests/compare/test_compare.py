@@ -1,7 +1,6 @@
 """`compare`: its own judgement, from the log alone, is the truth's wherever it is sure."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -68,45 +67,6 @@ def test_what_is_known_before_a_rest_is_held_against_it(drifting):
     assert compared.error_dps[FIRST_REST][:, 0] == pytest.approx(steps, abs=0.01)
     assert compared.error_dps[NOTHING][:, 2] == pytest.approx(0.5 + steps, abs=0.01)
     assert np.abs(compared.error_dps[FRESH]) == pytest.approx(0.1, abs=0.05)
-
-
-@pytest.fixture
-def ten_hz():
-    """A log of 300 s, a tick a second, with rates and accelerations of its own at each sample."""
-    rng, t_us = np.random.default_rng(3), 7_000_000 + np.arange(3000) * 100_000
-    rates, forces = rng.normal(size=(2, 3000, 3))
-    recording = SimpleNamespace(columns={"t_us": t_us})
-    return SimpleNamespace(recording=recording, rate_dps=rates, accel_g=forces + [0, 0, 9.0])
-
-
-def test_rests_are_of_three_ticks_and_more_and_long_ones_in_pieces_of_a_minute(ten_hz, monkeypatch):
-    still, count = np.zeros(300, bool), np.ones(300)
-    for a, b in ((0, 2), (5, 9), (10, 99), (110, 201)):
-        still[a:b] = True
-    count[8] = 0
-    ticks = SimpleNamespace(count=count, tick_s=1.0, start_us=7_000_000)
-    ticks.rate = np.random.default_rng(4).normal(size=(300, 3))
-    monkeypatch.setattr(judge, "still_ticks", lambda ticks, edges: still | edges)
-    rests = judge.rests_of(ticks, ten_hz)
-    places = [(50, 80, 5.0), (100, 990, 10.0), (1100, 1550, 110.0), (1550, 2010, 155.0)]
-    assert [(r.first, r.last, r.start_s) for r in rests] == places
-    assert rests[0].bias_dps == pytest.approx(ten_hz.rate_dps[50:80].mean(axis=0))
-    assert rests[0].sigma_dps == pytest.approx(judge.standard_error(ticks.rate[5:8]))
-    force = ten_hz.accel_g[50:80].mean(axis=0)
-    assert rests[0].down == pytest.approx(force / np.linalg.norm(force))
-    for none, down in ((None, None), (np.zeros((3000, 3)), [0, 0, 0])):
-        ten_hz.accel_g = none
-        told = judge.rests_of(ticks, ten_hz)[0].down
-        assert told is down or told.tolist() == down
-
-
-def test_a_way_is_asked_three_seconds_before_a_rest(ten_hz):
-    def rest(first):
-        return 0, Rest(first, 0, 0.0, np.full(3, 0.5), np.zeros(3), None)
-
-    known = np.arange(3000)[:, None] * np.ones(3)
-    errors = judge._errors([known], [ten_hz], [rest(first) for first in (50, 31, 30, 10)])
-    assert (0.5 - errors)[:, 0].tolist() == [19.0, 0.0, 0.0, 0.0]
 
 
 EARTH_DPS = 15.04 / 3600 / np.sqrt(3)

@@ -210,12 +210,3 @@ def test_a_broken_recording_leaves_no_output(tmp_path, capsys):
     assert main(["replay", str(bad), "--out", str(out)]) == 2
     assert list(tmp_path.iterdir()) == [bad]
     assert capsys.readouterr().err.count("\n") == 1
-
-
-def test_choices_of_sources_in_one_process_are_compiled_apart(simulated):
-    recording = simulated[0].between(0, 1500)
-    for options in ({}, {"motion": False}, {"gravity": False}, {}):
-        plain = replay(recording, runtime="cpython", options=options)
-        done = replay(recording, runtime="native", options=options)
-        assert done.state == plain.state
-        assert done.table.equals(plain.table)

@@ -22,6 +22,7 @@ from zerorate_tools.replay.bias_table import SOURCES, table
 from zerorate_tools.replay.engines import (
     CPythonEngine,
     InterpreterEngine,
+    NativeEngine,
     Outcome,
     staged_packages,
 )
@@ -122,16 +123,16 @@ def played(engine, recording, model, rows=300, options=None):
 
 
 @pytest.mark.parametrize("options", [{}, {"motion": False}, {"gravity": False}])
-def test_what_goes_through_files_comes_back_as_if_it_had_stayed(
-    recording, model, options, tmp_path
-):
+def test_through_files_or_compiled_the_firmware_gives_the_same(recording, model, options, tmp_path):
     how = recording, None if options else model, 300, options
-    theirs, state, sizes = played(engine_here(tmp_path), *how)
-    ours, own_state, own_sizes = played(CPythonEngine(), *how)
-    assert state == own_state and sizes == own_sizes == [300, 300, 300, 100]
-    for name, values in ours.items():
-        assert np.array_equal(theirs[name], values), name
+    ours, own_state, sizes = played(CPythonEngine(), *how)
+    assert sizes == [300, 300, 300, 100]
     assert len(set(ours["source"].ravel())) > 1 and ours["quality_q8"].any()
+    for engine in (engine_here(tmp_path), NativeEngine()):
+        theirs, state, their_sizes = played(engine, *how)
+        assert state == own_state and their_sizes == sizes
+        for name, values in ours.items():
+            assert np.array_equal(theirs[name], values), name
 
 
 def engine_here(folder, lost=0):

@@ -9,6 +9,7 @@ import sys
 from math import radians
 from pathlib import Path
 from types import SimpleNamespace
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -61,7 +62,8 @@ def test_what_the_guard_refuses_and_what_is_no_number_is_counted(heard):
     heard(corrector)
     for refused, temp_degc in ((0, 25.0), (3, 25.0), (0, float("inf")), (1, 25.0)):
         corrector.corrector.update = lambda sample, dt_us, said=refused: said
-        corrector.update((1.0, 2.0, 3.0), (0.0, 0.0, 1.0), temp_degc)
+        left = corrector.update((1.0, 2.0, 3.0), (0.0, 0.0, 1.0), temp_degc)
+        assert (left == (1.0, 2.0, 3.0)) is (temp_degc == float("inf"))
     assert corrector.refused == 3
 
 
@@ -104,21 +106,20 @@ def test_a_time_is_said_in_the_largest_unit_of_which_there_are_two(seconds, said
     assert numbers.duration(seconds) == said
 
 
-def test_a_small_file_is_a_file_of_one_mebibyte_at_most(tmp_path):
-    file = tmp_path / "x"
-    file.write_bytes(b"a" * (1 << 20))
-    assert len(bounds.bytes_of(file, "do")) == 1 << 20
-    file.write_bytes(b"a" * ((1 << 20) + 1))
-    for path, said in (
-        (file, "more than 1 MiB; do"),
-        (tmp_path, "is no file; do"),
-        (tmp_path / "y", "no such file; do"),
-    ):
-        with pytest.raises(InFile, match=said):
-            bounds.bytes_of(path, "do")
-    file.write_bytes(b"\xff")
-    with pytest.raises(InFile, match="no text in UTF-8"):
-        bounds.text_of(file, "do")
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [(b"a" * ((1 << 20) + 1), "more than 1 MiB; do"), (b"\xff", "no text in UTF-8"),
+     (None, "no such file; do")],
+)  # fmt: skip
+def test_a_small_file_of_text_is_one_of_one_mebibyte_at_most(tmp_path, content, said):
+    if content is not None:
+        (tmp_path / "x").write_bytes(content)
+    with pytest.raises(InFile, match=said):
+        bounds.text_of(tmp_path / "x", "do")
+    with pytest.raises(InFile, match="is no file; do"):
+        bounds.text_of(tmp_path, "do")
+    (tmp_path / "x").write_bytes(b"a" * (1 << 20))
+    assert len(bounds.text_of(tmp_path / "x", "do")) == 1 << 20
 
 
 def test_a_session_is_held_out_by_its_path_or_its_name_if_it_was_still():
@@ -231,39 +232,33 @@ def test_a_pipe_is_told_now_and_then_how_long_it_takes_and_a_terminal_has_a_bar(
 
 @pytest.fixture
 def stood_in(monkeypatch, tmp_path):
-    """stood_in(lsb_per_g, shown, rests) -> (the report, calls, progress) of three logs."""
+    """stood_in(lsb_per_g, shown, rests) -> (the report, Mock of each step, progress) of three."""
 
     def run(lsb_per_g=None, shown=None, rests=True, holdout=None):
-        calls, logs = [], ["a/x.csv", "a/y.csv", "a/z.csv"]
-
-        def noted(name, result=None):
-            return lambda *of, **more: (calls.append((name, *of)), result)[1]
-
-        def ticks(log, tick_s=0.0):
-            calls.append(("ticks", log, tick_s))
-            scales = SimpleNamespace(accel_lsb_per_g=lsb_per_g)
-            return SimpleNamespace(name=log[2], scales=scales)
-
-        def sessions(every):
-            if not rests:
-                raise TooLittleRest("too short")
-            return every[::2], "gate"
-
-        stand_ins = {
-            **{"tick_seconds": lambda log: {"a/y.csv": 9.0}.get(log, 1.0), "read_ticks": ticks},
-            **{"sessions_of": sessions, "analyse": noted("analyse", "an analysis")},
-            **{"run_and_prune": noted("run", ("pruned", "model")), "write_model": noted("model")},
-            **{"report": lambda of: {"of": of, "n": np.float64(0.5)}},
-            **{"shown_in_motion": noted("shown", shown)},
-            **{"write_in_motion": noted("moved", {"n": np.arange(2)})},
+        logs, told = ["a/x.csv", "a/y.csv", "a/z.csv"], []
+        scales = SimpleNamespace(accel_lsb_per_g=lsb_per_g)
+        steps = {
+            "tick_seconds": Mock(side_effect=[1.0, 9.0, 1.0]),
+            "read_ticks": Mock(
+                side_effect=lambda log, tick_s=0.0: SimpleNamespace(name=log[2], scales=scales)
+            ),
+            "sessions_of": Mock(side_effect=lambda every: (every[::2], "gate")),
+            "analyse": Mock(return_value="an analysis"),
+            "run_and_prune": Mock(return_value=("pruned", "model")),
+            "write_model": Mock(),
+            "report": Mock(side_effect=lambda of: {"of": of, "n": np.float64(0.5)}),
+            "shown_in_motion": Mock(return_value=shown),
+            "write_in_motion": Mock(return_value={"n": np.arange(2)}),
         }
-        for name, stand_in in stand_ins.items():
+        if not rests:
+            steps["sessions_of"].side_effect = TooLittleRest("too short")
+        for name, stand_in in steps.items():
             monkeypatch.setattr(closing, name, stand_in)
-        monkeypatch.setattr("zerorate_tools.report.write_report", noted("page"))
-        told = []
+        steps["page"] = Mock()
+        monkeypatch.setattr("zerorate_tools.report.write_report", steps["page"])
         result = closing.close(logs, tmp_path / "out", holdout, told.append, online=True)
         assert json.loads((tmp_path / "out" / "report.json").read_text()) == result
-        return result, calls, told
+        return result, SimpleNamespace(**steps), told
 
     return run
 
@@ -272,23 +267,23 @@ def stood_in(monkeypatch, tmp_path):
 def test_recordings_that_rest_are_read_in_one_tick_and_analysed_run_and_written(
     stood_in, holdout, at
 ):
-    result, calls, told = stood_in(holdout=holdout)
+    result, steps, told = stood_in(holdout=holdout)
     assert result == {"of": "pruned", "n": 0.5} and told == [1, 1, 1]
-    by_name = {name: of for name, *of in calls}
-    assert [of[2] for of in calls if of[0] == "ticks"] == [9.0] * 3
-    kept, held, gate, logs = by_name["analyse"]
+    assert [one.args[1] for one in steps.read_ticks.call_args_list] == [9.0] * 3
+    kept, held, gate, logs = steps.analyse.call_args.args
     assert [s.name for s in kept] == ["x", "z"] and (held, gate) == (at, "gate")
     assert logs == {"x": "a/x.csv", "y": "a/y.csv", "z": "a/z.csv"}
-    assert by_name["run"][0] == "an analysis" and by_name["run"][2].name == "corrected.parquet"
-    assert by_name["run"][3] is True and by_name["model"][0] == "model"
-    assert by_name["page"][:2] == ["pruned", result]
+    analysis, _, corrected, online, _ = steps.run_and_prune.call_args.args
+    assert (analysis, corrected.name, online) == ("an analysis", "corrected.parquet", True)
+    assert steps.write_model.call_args.args[0] == "model"
+    assert steps.page.call_args.args[:2] == ("pruned", result)
 
 
 @pytest.mark.parametrize(("holdout", "at"), [(None, None), ("y.csv", 1)])
 def test_recordings_that_hardly_rest_are_closed_on_their_motion(stood_in, holdout, at):
-    result, calls, _ = stood_in(8192.0, "shown", rests=False, holdout=holdout)
-    shown, moved = (next(of for of in calls if of[0] == name) for name in ("shown", "moved"))
-    assert result == {"n": [0, 1]} and shown[2] == at and moved[1] == "shown" and moved[3] == at
+    result, steps, _ = stood_in(8192.0, "shown", rests=False, holdout=holdout)
+    shown, moved = steps.shown_in_motion.call_args.args, steps.write_in_motion.call_args.args
+    assert result == {"n": [0, 1]} and shown[1] == at and moved[0] == "shown" and moved[2] == at
 
 
 @pytest.mark.parametrize("lsb_per_g", [None, 8192.0])

@@ -8,7 +8,6 @@ import json
 import os
 import sys
 import time
-from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from types import SimpleNamespace
@@ -17,7 +16,6 @@ from unittest.mock import ANY, Mock, call
 import numpy as np
 import pytest
 from zerorate_tools import cli
-from zerorate_tools.commands.learn import _shares
 from zerorate_tools.commands.options import above_zero, finite, print_json
 from zerorate_tools.errors import MissingRuntime, ZerorateError
 from zerorate_tools.importers import Options, parsed_mapping
@@ -68,216 +66,86 @@ class Asked(Exception):
     """The function behind a command was called; no more is done."""
 
 
-def also(plain, **typed):
-    """What a function is given without options, and what was typed instead."""
-    return plain | typed
-
-
+IMPORT = {"options": Options(), "mapping": [], "units": {}, "instance": 0, "advance": ANY}
 UNITS = {"time": "ms", "gyro": "dps", "accel": "g", "temp": "k"}
-IMPORT = {"mapping": [], "units": {}, "instance": 0, "advance": ANY}
 FLEET = dict.fromkeys(("scheduler", "workers", "devices_per_task", "model"))
 FLEET |= {"job": "replay", "keep": False, "minutes": 5.0, "advance": ANY}
 FLASH = {"dry_run": False, "main": None, "model": None, "parts": [], "only": False}
 REPLAY = dict.fromkeys(("state", "from_state", "model"))
 REPLAY |= {"runtime": "native", "resume": False, "advance": ANY}
-PLAIN = {"document": False, "motion": None, "gravity": None}
+SOURCES = {"document": False, "motion": None, "gravity": None}
 SIMULATE = {"truth": None, "session": None, "seed": None, "done": ANY}
 WATCH = {"settings": {"motion": None, "gravity": None}}
-CHIP = {"address": 0x69, "odr_hz": 50, "full_scale_dps": 500, "full_scale_g": 4}
-CHIP |= {"dlpf_hz": 20, "part": "P", "setup": "imu = 1"}
-LOG, OUT = Path("run.parquet"), Path("o.parquet")
-A, B = Path("a.csv"), Path("b.csv")
+RECORD = {"seconds": None, "done": ANY}
+LOG, OUT, TO = Path("run.parquet"), Path("o.parquet"), Path("o")
+A, B, M = Path("a.csv"), Path("b.csv"), Path("m.bin")
+CLOSE, FLEET_OF, IMPORTER = "closing.close", "fleet.devices_of", "importers.import_"
+RECORDER, REPLAYED = "boards.recording.record", "replay run.parquet --out o.parquet"
+TO_FILES, WATCHED = "simulate.simulate_to_files", "watch.watching.watch"
 
 
-@pytest.mark.parametrize(
-    ("words", "function", "given"),
-    [
-        (
-            "close a.csv b.csv --out o",
-            "closing.close",
-            call([A, B], Path("o"), None, ANY, online=False),
-        ),
-        (
-            "close a.csv --out o --online --holdout a.csv",
-            "closing.close",
-            call([A], Path("o"), "a.csv", ANY, online=True),
-        ),
-        ("compare a.csv b.csv", "compare.matrix_of", call([A, B])),
-        ("cut a.csv --at-row 2 --at-row 9 --out o", "importers.cut", call(A, [2, 9], Path("o"))),
-        ("fleet x y --out o", "fleet.devices_of", call(["x", "y"], None, without=Path("o"))),
-        (
-            "fleet x --out o --device-from (.)",
-            "fleet.devices_of",
-            call(["x"], "(.)", without=Path("o")),
-        ),
-        ("fleet run.parquet --out o", "fleet.fleet", call(ANY, Path("o"), **FLEET)),
-        (
-            "fleet run.parquet --out o --job close --keep --model m --minutes 2.5 "
-            "--scheduler tcp://h:1 --workers 1 --devices-per-task 3",
-            "fleet.fleet",
-            call(
-                ANY,
-                Path("o"),
-                **also(
-                    FLEET,
-                    job="close",
-                    scheduler="tcp://h:1",
-                    workers=1,
-                    devices_per_task=3,
-                    model=Path("m"),
-                    keep=True,
-                    minutes=2.5,
-                ),
-            ),
-        ),
-        ("flash P", "boards.flashing.flash", call("P", **FLASH)),
-        (
-            "flash P --dry-run --with motion,gravity --only --main m.py --model m.bin",
-            "boards.flashing.flash",
-            call(
-                "P",
-                dry_run=True,
-                main=Path("m.py"),
-                model=Path("m.bin"),
-                only=True,
-                parts=["motion", "gravity"],
-            ),
-        ),
-        (
-            "import a.csv --out o.parquet",
-            "importers.import_recording",
-            call([A], OUT, options=Options(), **IMPORT),
-        ),
-        (
-            "import a.csv --out o.parquet --hz 1/4 --sensor S --gyro-lsb-per-dps 2 "
-            "--accel-lsb-per-g 3 --temp-lsb-per-degc 4 --temp-offset-degc -5",
-            "importers.import_recording",
-            call([A], OUT, options=Options("S", 0.25, 2, 3, 4, -5), **IMPORT),
-        ),
-        (
-            "import a.csv --out o.parquet --time-unit MS --gyro-unit dps --accel-unit G "
-            "--temp-unit K --instance 2 --map gx=x:dps",
-            "importers.import_recording",
-            call(
-                [A],
-                OUT,
-                options=Options(),
-                **also(IMPORT, mapping=[parsed_mapping("gx=x:dps")], units=UNITS, instance=2),
-            ),
-        ),
-        (
-            "import a.csv b.csv --out o",
-            "importers.import_together",
-            call([A, B], Path("o"), options=Options(), **IMPORT),
-        ),
-        (
-            "import a.csv --out .",
-            "importers.import_together",
-            call([A], Path("."), options=Options(), **IMPORT),
-        ),
-        (
-            "model check m.bin",
-            "model.files.check_model",
-            call(Path("m.bin"), device=Binding(), scales=None),
-        ),
-        (
-            "model check m.bin --chip-id 0x68 --gyro-range 1 --accel-range 0 --filter 254 "
-            "--log run.parquet",
-            "model.files.check_model",
-            call(Path("m.bin"), device=Binding(0x68, 1, 0, 254), scales=SCALES),
-        ),
-        (
-            "record /dev/i2c-1 --out o.csv",
-            "boards.recording.record",
-            call("/dev/i2c-1", Path("o.csv"), seconds=None, done=ANY),
-        ),
-        (
-            "record 0 --out o.csv --seconds 9 --address 0x69 --hz 50 --dps 500 --g 4 "
-            "--dlpf-hz 20 --part P --setup s.py",
-            "boards.recording.record",
-            call("0", Path("o.csv"), seconds=9, done=ANY, **CHIP),
-        ),
-        (
-            "replay run.parquet --out o.parquet",
-            "recordings.open_recording",
-            call(LOG, keep_gaps=True),
-        ),
-        (
-            "replay run.parquet --out o.parquet",
-            "replay.replay",
-            call(LOG, OUT, options=PLAIN, **REPLAY),
-        ),
-        (
-            "replay run.parquet --out o.parquet --runtime x86 --state s --from-state f "
-            "--resume --model m",
-            "replay.replay",
-            call(
-                LOG,
-                OUT,
-                options=PLAIN,
-                **also(
-                    REPLAY,
-                    runtime="x86",
-                    state=Path("s"),
-                    from_state=Path("f"),
-                    resume=True,
-                    model=Path("m"),
-                ),
-            ),
-        ),
-        (
-            "replay run.parquet --out o.parquet --motion --no-gravity --every --set "
-            "step_degc=2 --set bins=8 --set short=2 --set long=4",
-            "replay.replay",
-            call(
-                LOG,
-                OUT,
-                options=also(
-                    PLAIN,
-                    motion=True,
-                    gravity=False,
-                    every=True,
-                    step_degc=2.0,
-                    bins=8,
-                    short=2,
-                    long=4,
-                ),
-                **REPLAY,
-            ),
-        ),
-        (
-            "replay run.parquet --out o.parquet --document --rests",
-            "replay.replay",
-            call(LOG, OUT, options=also(PLAIN, document=True, every=False), **REPLAY),
-        ),
-        ("simulate car --out o.parquet", "simulate.load_description", call("car")),
-        ("simulate car --out o.parquet", "simulate.simulate_to_files", call(ANY, OUT, **SIMULATE)),
-        (
-            "simulate car --out o.parquet --truth t.parquet --session 2 --seed 3",
-            "simulate.simulate_to_files",
-            call(ANY, OUT, **also(SIMULATE, truth=Path("t.parquet"), session=2, seed=3)),
-        ),
-        ("state show s.bin", "replay.state_in_words.words_of_file", call(Path("s.bin"), {})),
-        (
-            "state show s.bin --set bins=8",
-            "replay.state_in_words.words_of_file",
-            call(Path("s.bin"), {"bins": 8}),
-        ),
-        ("watch x.csv", "watch.watching.watch", call("x.csv", WatchOptions(**WATCH))),
-        (
-            "watch x.csv --for 3 --once --every 2 --plain --model m --no-motion --gravity "
-            "--setup s.py",
-            "watch.watching.watch",
-            call(
-                "x.csv",
-                WatchOptions(
-                    3, True, 2, True, {"motion": False, "gravity": True}, Path("m"), "imu = 1"
-                ),
-            ),
-        ),
-        ("watch P --own", "watch.watching.watch", call("P", WatchOptions(**WATCH, own=True))),
-    ],
-)
+@pytest.mark.parametrize(("words", "function", "given"), [
+    ("close a.csv b.csv --out o", CLOSE, call([A, B], TO, None, ANY, online=False)),
+    ("close a.csv --out o --online --holdout a.csv", CLOSE,
+     call([A], TO, "a.csv", ANY, online=True)),
+    ("compare a.csv b.csv", "compare.matrix_of", call([A, B])),
+    ("cut a.csv --at-row 2 --at-row 9 --out o", "importers.cut", call(A, [2, 9], TO)),
+    ("fleet x y --out o", FLEET_OF, call(["x", "y"], None, without=TO)),
+    ("fleet x --out o --device-from (.)", FLEET_OF, call(["x"], "(.)", without=TO)),
+    ("fleet run.parquet --out o", "fleet.fleet", call(ANY, TO, **FLEET)),
+    ("fleet run.parquet --out o --job close --keep --model m.bin --minutes 2.5 "
+     "--scheduler tcp://h:1 --workers 1 --devices-per-task 3", "fleet.fleet",
+     call(ANY, TO, job="close", scheduler="tcp://h:1", workers=1, devices_per_task=3, model=M,
+          keep=True, minutes=2.5, advance=ANY)),
+    ("flash P", "boards.flashing.flash", call("P", **FLASH)),
+    ("flash P --dry-run --with motion,gravity --only --main m.py --model m.bin",
+     "boards.flashing.flash", call("P", dry_run=True, main=Path("m.py"), model=M, only=True,
+                                   parts=["motion", "gravity"])),
+    ("import a.csv --out o.parquet", IMPORTER + "recording", call([A], OUT, **IMPORT)),
+    ("import a.csv --out o.parquet --hz 1/4 --sensor S --gyro-lsb-per-dps 2 --accel-lsb-per-g 3 "
+     "--temp-lsb-per-degc 4 --temp-offset-degc -5", IMPORTER + "recording",
+     call([A], OUT, **IMPORT | {"options": Options("S", 0.25, 2, 3, 4, -5)})),
+    ("import a.csv --out o.parquet --time-unit MS --gyro-unit dps --accel-unit G --temp-unit K "
+     "--instance 2 --map gx=x:dps", IMPORTER + "recording",
+     call([A], OUT, options=Options(), mapping=[parsed_mapping("gx=x:dps")], units=UNITS,
+          instance=2, advance=ANY)),
+    ("import a.csv b.csv --out o", IMPORTER + "together", call([A, B], TO, **IMPORT)),
+    ("import a.csv --out .", IMPORTER + "together", call([A], Path("."), **IMPORT)),
+    ("model check m.bin", "model.files.check_model", call(M, device=Binding(), scales=None)),
+    ("model check m.bin --chip-id 0x68 --gyro-range 1 --accel-range 0 --filter 254 "
+     "--log run.parquet", "model.files.check_model",
+     call(M, device=Binding(0x68, 1, 0, 254), scales=SCALES)),
+    ("record /dev/i2c-1 --out o.parquet", RECORDER, call("/dev/i2c-1", OUT, **RECORD)),
+    ("record 0 --out o.parquet --seconds 9 --address 0x69 --hz 50 --dps 500 --g 4 --dlpf-hz 20 "
+     "--part P --setup s.py", RECORDER,
+     call("0", OUT, seconds=9, done=ANY, address=0x69, odr_hz=50, full_scale_dps=500,
+          full_scale_g=4, dlpf_hz=20, part="P", setup="imu = 1")),
+    (REPLAYED, "recordings.open_recording", call(LOG, keep_gaps=True)),
+    (REPLAYED, "replay.replay", call(LOG, OUT, options=SOURCES, **REPLAY)),
+    (REPLAYED + " --runtime x86 --state s --from-state f --resume --model m.bin", "replay.replay",
+     call(LOG, OUT, options=SOURCES, runtime="x86", state=Path("s"), from_state=Path("f"),
+          resume=True, model=M, advance=ANY)),
+    (REPLAYED + " --motion --no-gravity --every --set step_degc=2 --set bins=8 --set short=2 "
+     "--set long=4", "replay.replay",
+     call(LOG, OUT, **REPLAY, options=SOURCES | {
+         "motion": True, "gravity": False, "every": True, "step_degc": 2.0, "bins": 8, "short": 2,
+         "long": 4})),
+    (REPLAYED + " --document --rests", "replay.replay",
+     call(LOG, OUT, options=SOURCES | {"document": True, "every": False}, **REPLAY)),
+    ("simulate car --out o.parquet", "simulate.load_description", call("car")),
+    ("simulate car --out o.parquet", TO_FILES, call(ANY, OUT, **SIMULATE)),
+    ("simulate car --out o.parquet --truth t --session 2 --seed 3", TO_FILES,
+     call(ANY, OUT, truth=Path("t"), session=2, seed=3, done=ANY)),
+    ("state show s", "replay.state_in_words.words_of_file", call(Path("s"), {})),
+    ("state show s --set bins=8", "replay.state_in_words.words_of_file",
+     call(Path("s"), {"bins": 8})),
+    ("watch x.csv", WATCHED, call("x.csv", WatchOptions(**WATCH))),
+    ("watch x.csv --for 3 --once --every 2 --plain --model m.bin --no-motion --gravity "
+     "--setup s.py", WATCHED,
+     call("x.csv", WatchOptions(3, True, 2, True, {"motion": False, "gravity": True}, M,
+                                "imu = 1"))),
+    ("watch P --own", WATCHED, call("P", WatchOptions(**WATCH, own=True))),
+])  # fmt: skip
 def test_a_function_is_given_what_was_typed(stands_in, words, function, given):
     asked = stands_in(f"zerorate_tools.{function}", Asked())
     with pytest.raises(Asked):
@@ -302,25 +170,20 @@ def test_the_bar_is_as_long_as_the_work(stands_in, words, total):
     assert progress.call_args.args[1:] == (total,)
 
 
+EXPORTED = "--odr-hz 50 --gyro-lsb-per-dps 65 --accel-lsb-per-g 8 --temp-lsb-per-degc 9 --model m"
+
+
 @pytest.mark.parametrize(
     ("words", "scales", "model"),
-    [
-        ("", (100, 131, 16384, 340), None),
-        (
-            "--odr-hz 50 --gyro-lsb-per-dps 65 --accel-lsb-per-g 8 --temp-lsb-per-degc 9 "
-            "--model m.bin",
-            (50, 65, 8, 9),
-            Path("m.bin"),
-        ),
-    ],
+    [("", (100, 131, 16384, 340), None), (EXPORTED, (50, 65, 8, 9), Path("m"))],
 )
 def test_export_is_given_the_scales_of_an_mpu6050_or_those_typed(stands_in, words, scales, model):
     export = stands_in("zerorate_tools.kernels.export.export_c", Asked())
     with pytest.raises(Asked):
         cli.main(["export", "c", "o", *words.split()])
     (folder, sensor, given), _ = export.call_args
+    assert (folder, given) == (TO, model)
     of = ("odr_hz", "gyro_lsb_per_dps", "accel_lsb_per_g", "temp_lsb_per_degc")
-    assert (folder, given) == (Path("o"), model)
     assert tuple(getattr(sensor, name) for name in of) == scales
 
 
@@ -355,42 +218,22 @@ def test_what_the_function_could_not_do_ends_with_2(words):
     assert cli.main(words.split()) == 2
 
 
+NONE = SimpleNamespace(samples=0, resumed=0, report={"sessions": 0})
+
+
 @pytest.mark.parametrize(
     ("words", "function", "nothing"),
     [
-        (
-            "fleet run.parquet --out o --json",
-            "fleet.fleet",
-            SimpleNamespace(resumed=0, report={"sessions": 0}),
-        ),
-        ("record 0 --out o.csv", "boards.recording.record", SimpleNamespace(samples=0)),
-        ("record fake: --out o.csv --guide", "boards.recording.record", SimpleNamespace(samples=0)),
-        ("watch x.csv --plot p.png", "watch.watching.watch", None),
+        ("fleet run.parquet --out o --json", "fleet.fleet", NONE),
+        ("record 0 --out o.csv", RECORDER, NONE),
+        ("record fake: --out o.csv --guide", RECORDER, NONE),
+        ("watch x.csv --plot p.png", WATCHED, None),
     ],
 )
 def test_1_says_that_nothing_came(stands_in, words, function, nothing, capsys):
     stands_in(f"zerorate_tools.{function}", nothing)
     assert cli.main(words.split()) == 1
     assert words[:6] != "record" or "no sample came" in capsys.readouterr().out
-
-
-def test_an_import_says_what_came_of_each_file(stands_in, capsys):
-    report = SimpleNamespace(lines=lambda: ["first", "second"])
-    stands_in("zerorate_tools.importers.import_recording", report)
-    assert cli.main(["import", "a.csv", "--out", "o.csv"]) == 0
-    assert capsys.readouterr().out.splitlines() == ["o.csv", "  first", "  second"]
-
-
-@pytest.mark.parametrize(("words", "said"), [("", "the table"), ("--out p", "the table\n\np")])
-def test_compare_says_where_its_page_is(stands_in, capsys, words, said):
-    stands_in("zerorate_tools.compare.matrix_of")
-    stands_in("zerorate_tools.compare.compare", "found")
-    stands_in("zerorate_tools.compare.show.table", "the table")
-    stands_in("zerorate_tools.compare.show.write_page")
-    advance = Mock()
-    stands_in("zerorate_tools.progress.progress", nullcontext(advance))
-    assert cli.main(["compare", "a.csv", *words.split()]) == 0
-    assert capsys.readouterr().out == said + "\n" and advance.call_args_list == [call(1)]
 
 
 def test_allan_prints_mdps_of_each_length_and_the_lowest(stands_in, capsys):
@@ -402,10 +245,6 @@ def test_allan_prints_mdps_of_each_length_and_the_lowest(stands_in, capsys):
     assert first == "the longest stretch at rest: 25.0 s" and numbers[0, 0] == 0.5
     assert numbers[0, 1:] == pytest.approx(np.full(3, 1.0), abs=0.3)
     assert [float(n) for n in floor.split()[1:]] == numbers[:, 1:].min(axis=0).tolist()
-
-
-def test_shares_are_of_all_samples():
-    assert _shares({"still": 6, "moving": 2}, 8) == "still 6 (75.0%), moving 2 (25.0%)"
 
 
 def test_what_was_watched_is_drawn_where_that_is_asked(stands_in, capsys):
@@ -447,32 +286,22 @@ def test_close_prints_what_it_found_at_rest_or_in_motion(stands_in, capsys, in_m
 
 
 @pytest.mark.parametrize("text", ["nan", "inf", "-inf"])
-def test_what_is_no_finite_number_is_refused(text):
-    for kind in (finite, above_zero):
-        with pytest.raises(argparse.ArgumentTypeError):
-            kind(text)
+@pytest.mark.parametrize("kind", [finite, above_zero])
+def test_what_is_no_finite_number_is_refused(kind, text):
+    with pytest.raises(argparse.ArgumentTypeError):
+        kind(text)
 
 
-@pytest.mark.parametrize(
-    ("text", "taken"),
-    [
-        ("1e-9", True),
-        ("1e9", True),
-        ("0.5", True),
-        ("1", True),
-        ("0", False),
-        ("-1", False),
-        ("1000000001", False),
-        ("1e10", False),
-    ],
-)
-def test_a_rate_or_a_time_is_above_zero_and_at_most_a_billion(text, taken):
+@pytest.mark.parametrize("text", ["1e-9", "1e9", "0.5", "1"])
+def test_a_rate_or_a_time_is_above_zero(text):
+    assert finite(text) == above_zero(text) == float(text)
+
+
+@pytest.mark.parametrize("text", ["0", "-1", "1000000001", "1e10"])
+def test_a_rate_or_a_time_is_not_0_nor_beyond_a_billion(text):
     assert finite(text) == float(text)
-    if taken:
-        assert above_zero(text) == float(text)
-    else:
-        with pytest.raises(argparse.ArgumentTypeError):
-            above_zero(text)
+    with pytest.raises(argparse.ArgumentTypeError):
+        above_zero(text)
 
 
 @pytest.mark.parametrize("words", ["--seconds abc", "--address 300", "--address 0x7", "--hz 1,5"])
@@ -493,23 +322,20 @@ class Of:
 
 
 def test_json_has_plain_values_and_null_where_there_is_no_number(capsys):
-    found = {
-        1: Of(Path("a/b"), (1, np.float32(0.5), np.arange(2))),
-        "none": [float("nan"), float("inf"), np.nan, True, None, "text"],
-        "set": {3},
-        "frozen": frozenset([4]),
-        "kind": {"of": Of},
-    }
-    del found["kind"]
-    print_json(found)
-    said = capsys.readouterr().out
-    assert json.loads(said) == {
+    print_json(
+        {
+            1: Of(Path("a/b"), (1, np.float32(0.5), np.arange(2))),
+            "none": [float("nan"), float("inf"), np.nan, True, None, "text"],
+            "set": {3},
+            "frozen": frozenset([4]),
+        }
+    )
+    assert json.loads(capsys.readouterr().out) == {
         "1": {"path": "a/b", "numbers": [1, 0.5, [0, 1]]},
         "none": [None, None, None, True, None, "text"],
         "set": [3],
         "frozen": [4],
     }
-    assert said.startswith('{\n "1"')
     with pytest.raises(TypeError):
         print_json(Of)
 
@@ -552,14 +378,6 @@ def test_each_chapter_of_the_demo_is_read_while_the_next_is_made_and_1_says_that
     pipe.flush()
     assert pipe.buffer.getvalue().decode().split() == chapters and read == chapters[:3]
     assert draw.call_args == call(first, before, after, ANY) and Path("deep/demo.png").exists()
-
-
-def test_a_picture_makes_the_folders_above_it(tmp_path):
-    from zerorate_tools.commands.demo import draw_into
-
-    path = draw_into(tmp_path / "a" / "b", lambda text, out: out.write_text(text), "drawn")
-    assert path == tmp_path / "a" / "b" / "demo.png" and path.read_text() == "drawn"
-    assert draw_into(tmp_path / "a" / "b", lambda out: out.write_text("again")) == path
 
 
 def test_an_interpreter_of_ones_own_is_not_fetched(stands_in, capsys):
@@ -633,10 +451,8 @@ def test_run_is_given_what_was_typed(serving):
     assert cli.main(["run", "fake:", *words.split()]) == 0
     system, sinks, model = serving.service.call_args.args
     assert sinks == ["Datagrams", "Metrics", "UnixSocket"] and model == b"model"
-    assert serving.Datagrams.call_args.args == ("h:1", True) and serving.Metrics.call_args.args == (
-        "h:2",
-        True,
-    )
+    assert serving.Datagrams.call_args == call("h:1", True)
+    assert serving.Metrics.call_args == call("h:2", True)
     assert serving.FakeBus.call_args == call(address=0x69, part="mpu6500")
     assert system.open_imu() == "imu" and not serving.linux.called
     typed = {"odr_hz": 50, "full_scale_dps": 500, "full_scale_g": 8, "dlpf_hz": 20}
@@ -649,9 +465,8 @@ def test_a_model_in_words_is_turned_into_bytes_for_the_service(serving, stands_i
     read = stands_in("zerorate_tools.model.read_model", "model")
     stands_in("zerorate_tools.model.encoded", b"bytes of it")
     cli.main(["run", "fake:", "--model", "m.json"])
-    assert serving.service.call_args.args[2] == b"bytes of it" and read.call_args.args == (
-        Path("m.json"),
-    )
+    assert serving.service.call_args.args[2] == b"bytes of it"
+    assert read.call_args == call(Path("m.json"))
 
 
 def test_an_open_bus_is_closed_where_no_chip_answers_and_a_wrong_setting_is_one_line(serving):
@@ -697,11 +512,9 @@ def test_interpreters_are_fetched_in_turn_and_2_says_that_one_could_not_be(stand
     assert fetch.call_args_list == [call("wasm"), call("x64")] and pico.call_count == 1
     assert capsys.readouterr().out == "wasm: ready\nrp2040: ready\nx64: ready\n"
     fetch.side_effect = MissingRuntime("cannot be had")
-    assert cli.main(["runtimes", "get", "wasm", "rp2040", "x64"]) == 2
+    assert cli.main(["runtimes", "get", "wasm", "rp2040"]) == 2
     ended = capsys.readouterr()
-    assert ended.out == "rp2040: ready\n"
-    assert ended.err == "zerorate: wasm: cannot be had\nzerorate: x64: cannot be had\n"
-    assert refused("runtimes", "get", "vax") and refused("runtimes")
+    assert ended.out == "rp2040: ready\n" and ended.err == "zerorate: wasm: cannot be had\n"
 
 
 def test_the_emulated_pico_is_in_a_checkout_only(monkeypatch, capsys):
