@@ -20,7 +20,7 @@ from zerorate_tools.loop.read.ticks import read_ticks, tick_seconds
 from zerorate_tools.recordings import Recording, turning, write_recording
 from zerorate_tools.simulate import reference, simulate_sessions
 
-from . import arithmetic, exported, fleets, moved, reported, served, shown, watched
+from . import arithmetic, exported, fleets, moved, reported, resting, served, shown, watched
 from .imported import IMPORTED
 
 FILE = Path(__file__).with_name("known.json")
@@ -181,12 +181,13 @@ def read():
         found[f"{number} said"] = [session.earth.said]
     spectra = [spectrum(s.ticks_dps, s.tick_s, 1024) for s in sessions]
     for number, line in enumerate(find(spectra[1:], spectra[:1], 3.0, 0.02)):
-        found[f"line {number}"] = [line.hz, *line.amplitude_dps, line.p_value, line.in_holdout]
+        nats = np.log(line.p_value + 1e-300)
+        found[f"line {number}"] = [line.hz, *line.amplitude_dps, nats, line.in_holdout]
     return found | figures({"welch": sessions[2].welch.power})
 
 
 def parts_of_reading():
-    """Courses of channels in steps, spectra beside their neighbours, what noise hides of a turn."""
+    """Courses in steps, spectra beside their neighbours, what noise hides of a turn, and rests."""
     rng, at = np.random.default_rng(5), np.arange(1200)
     found = {}
     for number, (height, noise) in enumerate(
@@ -202,9 +203,8 @@ def parts_of_reading():
     found |= figures({"power": seen.power, "ratio": beside_neighbours(seen, 3.0)[1:]})
     off = rng.normal(0, 1.5, (1200, 3)) + 2.0 * (np.abs(at - 700) < 90)[:, None]
     there, quiet = at % 50 > 1, (at % 70 > 5) & (np.abs(at - 300) > 40)
-    return found | {
-        "near": [" ".join(map(str, np.flatnonzero(np.diff(_is_near(off, there, quiet)))))]
-    }
+    numbers, words = resting.rests()
+    return found | figures(numbers) | words | {"near": resting.edges(_is_near(off, there, quiet))}
 
 
 def flat(value, path=""):
