@@ -130,8 +130,7 @@ AREAS = {
     ),
     "read": (
         [_TOOLS + "loop/read/"],
-        ["loop/test_gate_by_hand.py", "loop/test_still.py", "loop/test_ticks.py",
-         "loop/test_read_by_hand.py",
+        ["loop/test_gate_by_hand.py", "loop/test_ticks.py", "loop/test_read_by_hand.py",
          _FIGURES + "[read]", _FIGURES + "[parts of reading]"],
     ),
     "fit": (

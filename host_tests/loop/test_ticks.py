@@ -14,82 +14,18 @@ from zerorate_tools.loop.read.still import deviation_of, still_stretch
 from zerorate_tools.loop.read.ticks import read_ticks
 from zerorate_tools.recordings import Recording, Scales, write_recording
 
-
-def read(path, t_us, odr_hz):
-    rng = np.random.default_rng(2)
-    words = {n: rng.integers(-40, 40, len(t_us)) for n in ("gx", "gy", "gz", "ax", "ay", "az")}
-    scales = Scales("MPU-6050", odr_hz, 131.0, 16384.0)
-    write_recording(Recording({"t_us": t_us, **words}, scales, path.stem), path)
-    return read_ticks(path)
-
-
-@pytest.mark.parametrize(
-    ("every_s", "odr_hz"), [(15.0, 0.0666667), (14.9999925, 1 / 15), (0.99999, 1.0)]
-)
-def test_slow_samples_have_a_tick_each_though_their_rate_is_not_quite_what_it_says(
-    tmp_path, every_s, odr_hz
-):
-    t_us = np.rint(np.arange(400) * every_s * 1e6).astype(np.int64)
-    assert (read(tmp_path / "slow.parquet", t_us, odr_hz).count == 1).all()
-
-
-def test_slow_samples_that_come_early_or_late_have_a_tick_each(tmp_path):
-    jitter = np.random.default_rng(1).uniform(-0.2, 0.2, 400)
-    t_us = np.rint((np.arange(400) + jitter) * 1e6).astype(np.int64)
-    ticks = read(tmp_path / "late.parquet", t_us, 1.0)
-    assert (ticks.count == 1).all() and ticks.start_us == t_us[0] - 500_000
-
-
-def test_quick_samples_begin_with_the_first_tick(tmp_path):
-    t_us = 5_000_000 + np.arange(1000) * 40_000
-    ticks = read(tmp_path / "quick.parquet", t_us, 25.0)
-    assert ticks.start_us == 5_000_000 and (ticks.count == 25).all()
-
-
-SWING_DPS, NOISE_DPS, LIMIT_DPS = 500.0, 0.3, 422.0
-
-
-@pytest.fixture
-def swings() -> np.ndarray:
-    """(6000, 3) dps: a minute of swings about x at 1 Hz, its noise in it."""
-    at_s = np.arange(6000) / 100.0
-    rate = np.zeros((len(at_s), 3))
-    rate[:, 0] = SWING_DPS * np.sin(2.0 * np.pi * at_s)
-    return rate + np.random.default_rng(1).normal(0.0, NOISE_DPS, rate.shape)
-
-
-def test_swings_within_the_range_are_not_saturated(swings):
-    assert not saturated(swings).any()
-
-
-def test_every_sample_at_the_limit_is_saturated(swings):
-    beyond = np.abs(swings[:, 0]) > LIMIT_DPS + 1.0
-    swings[:, 0] = np.clip(swings[:, 0], -LIMIT_DPS, LIMIT_DPS)
-    found = saturated(swings)
-    assert found[beyond].all()
-    assert not found[np.abs(swings[:, 0]) < LIMIT_DPS - 1.0].any()
-
-
-@pytest.mark.parametrize("rate_dps", [0.0, 30.0, 300.0])
-def test_rest_and_a_turntable_at_a_constant_rate_are_not_saturated(rate_dps):
-    rate = np.random.default_rng(2).normal(0.0, NOISE_DPS, (6000, 3))
-    rate[1000:5000, 2] += rate_dps
-    assert saturated(rate).mean() < 0.001
-
-
 HZ, N = 50.0, 30000
 
 
 @pytest.fixture
 def written(tmp_path):
-    """Ten minutes of white noise of 0.05 dps; keep: samples that stay."""
+    """White noise of 0.05 dps at times in s, ten minutes of it by default."""
 
-    def write(hz=HZ, moving=(), keep=slice(None), n=N):
-        gyro = np.random.default_rng(1).normal(0, 10, (n, 3))
-        gyro[slice(*moving) if moving else slice(0)] *= 40
-        columns = {"t_us": (np.arange(n) * 1e6 / hz).astype(np.int64)}
-        columns.update({a: np.rint(v).astype(np.int32) for a, v in zip(("gx", "gy", "gz"), gyro.T)})
-        columns = {name: values[keep] for name, values in columns.items()}
+    def write(hz=HZ, at_s=None):
+        at_s = np.arange(N) / hz if at_s is None else at_s
+        columns = {"t_us": np.rint(at_s * 1e6).astype(np.int64)}
+        noise = np.random.default_rng(1).normal(0, 10, (3, len(at_s)))
+        columns |= zip(("gx", "gy", "gz"), np.rint(noise).astype(np.int32))
         path = tmp_path / "run.parquet"
         write_recording(Recording(columns, Scales("X", hz, 200.0), "run"), path)
         return path
@@ -97,11 +33,41 @@ def written(tmp_path):
     return write
 
 
-@pytest.mark.parametrize(("hz", "each_s"), [(50.0, 0.1), (12.5, 0.1), (5.0, 0.2), (2.0, 0.5)])
-def test_what_is_quiet_throughout_is_one_stretch(written, hz, each_s):
-    rate, seconds = still_stretch(written(hz))
-    assert seconds == pytest.approx(each_s)
-    assert len(rate) * seconds == pytest.approx(N / hz, rel=0.01)
+@pytest.mark.parametrize(
+    ("odr_hz", "every_s", "jitter_s", "each", "before_us"),
+    [
+        *((0.0666667, 15.0, 0, 1, 7_500_000), (1 / 15, 14.9999925, 0, 1, 7_500_000)),
+        *((1.0, 0.99999, 0, 1, 500_000), (1.0, 1.0, 0.2, 1, 500_000), (25.0, 0.04, 0, 25, 0)),
+    ],
+    ids=["slow", "slow and early", "early", "early or late", "quick"],
+)
+def test_slow_samples_have_a_tick_each_and_quick_ones_begin_with_the_first(
+    written, odr_hz, every_s, jitter_s, each, before_us
+):
+    jitter = np.random.default_rng(1).uniform(-jitter_s, jitter_s, 400)
+    ticks = read_ticks(written(odr_hz, 5.0 + np.arange(400) * every_s + jitter))
+    assert (ticks.count == each).all()
+    assert ticks.start_us == round(5e6 + 1e6 * jitter[0]) - before_us
+
+
+NOISE_DPS, LIMIT_DPS = 0.3, 422.0
+
+
+@pytest.mark.parametrize("limit_dps", [LIMIT_DPS, 600.0])
+def test_every_sample_at_the_limit_is_saturated(limit_dps):
+    rate = np.random.default_rng(1).normal(0.0, NOISE_DPS, (6000, 3))
+    rate[:, 0] += 500.0 * np.sin(2.0 * np.pi * np.arange(6000) / 100.0)
+    beyond = np.abs(rate[:, 0]) > limit_dps + 1.0
+    rate[:, 0] = np.clip(rate[:, 0], -limit_dps, limit_dps)
+    found = saturated(rate)
+    assert found[beyond].all() and not found[np.abs(rate[:, 0]) < limit_dps - 1.0].any()
+
+
+@pytest.mark.parametrize("rate_dps", [0.0, 30.0, 300.0])
+def test_rest_and_a_turntable_at_a_constant_rate_are_not_saturated(rate_dps):
+    rate = np.random.default_rng(2).normal(0.0, NOISE_DPS, (6000, 3))
+    rate[1000:5000, 2] += rate_dps
+    assert saturated(rate).mean() < 0.001
 
 
 def test_white_noise_falls_with_the_square_root_of_time_to_minutes(written):
@@ -112,63 +78,37 @@ def test_white_noise_falls_with_the_square_root_of_time_to_minutes(written):
     assert np.abs(deviation[few] / expected[few] - 1).max() < 0.2
 
 
-def test_motion_ends_a_stretch(written):
-    rate, each_s = still_stretch(written(moving=(9000, 10000)))
-    assert 395 <= len(rate) * each_s <= 400
-
-
 def test_a_lost_tick_is_bridged_and_many_make_the_ticks_longer(written):
-    lost = np.ones(N, bool)
-    lost[1000:1008] = False
-    assert still_stretch(written(keep=lost))[1] == 0.1
-    bursts = np.arange(N) % 50 < 20
-    rate, each_s = still_stretch(written(keep=bursts))
+    at_s = np.arange(N) / HZ
+    assert still_stretch(written(at_s=np.delete(at_s, slice(1000, 1008))))[1] == 0.1
+    rate, each_s = still_stretch(written(at_s=at_s[np.arange(N) % 50 < 20]))
     assert each_s == 1.0 and len(rate) >= 599
-
-
-def test_a_slow_recording_has_ticks_of_one_row(written):
-    rate, each_s = still_stretch(written(hz=1 / 15, n=200))
-    assert each_s == 15.0 and len(rate) == 200
 
 
 def test_too_short_a_rest_is_a_sentence(written):
     with pytest.raises(CannotClose, match="run: never still for 450 s; leave it at rest longer"):
-        still_stretch(written(hz=1 / 15, n=20))
+        still_stretch(written(1 / 15, 15.0 * np.arange(20)))
 
 
 UP = np.array([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0]])
+_QUARTER_LEFT = [2.0, 0.0, 0.0, 2.0]  # nose to the north: east is to the right
 
 
-def ticks(columns=None, **more):
-    """Three ticks, one pose each. columns: attitude as columns give it; more: of the scales."""
+@pytest.mark.parametrize(
+    ("attitude", "more", "rate", "unknown"),
+    [
+        (None, {}, 0 * UP, 1.0),
+        (None, {"latitude_deg": 30.0}, UP / 2, np.sqrt(3) / 2),
+        (np.tile(_QUARTER_LEFT, (3, 1)) / np.sqrt(8), {"latitude_deg": 0.0}, [1.0, 0, 0], 0.0),
+        (None, {"latitude_deg": 0.0, "attitude": _QUARTER_LEFT}, [1.0, 0, 0], 0.0),
+    ],
+    ids=["no latitude", "gravity", "attitude", "a constant attitude"],
+)
+def test_of_earths_rate_what_gravity_and_attitude_tell_is_known(attitude, more, rate, unknown):
     scales = Scales("MPU-6050", 25.0, 131.0, 16384.0, more=more)
-    return SimpleNamespace(count=np.ones(3), accel=UP, attitude=columns, scales=scales)
-
-
-def test_without_a_latitude_nothing_is_removed_and_all_of_it_is_said_to_be_left():
-    earth = earth_of(ticks())
-    assert not earth.rate_dps.any() and earth.unknown_dps == EARTH_DPS
-    assert "4.2 mdps" in earth.said and "latitude_deg" in earth.said
-
-
-def test_gravity_and_latitude_give_the_vertical_part():
-    earth = earth_of(ticks(latitude_deg=30.0))
-    assert earth.rate_dps == pytest.approx(UP * EARTH_DPS / 2)
-    assert earth.unknown_dps == pytest.approx(EARTH_DPS * np.sqrt(3) / 2)
-
-
-def test_attitude_and_latitude_give_all_of_it():
-    quarter_left = np.sqrt(0.5)  # nose to the north: east is to the right
-    attitude = np.tile([quarter_left, 0.0, 0.0, quarter_left], (3, 1))
-    earth = earth_of(ticks(columns=attitude, latitude_deg=0.0))
-    assert earth.rate_dps == pytest.approx(np.tile([EARTH_DPS, 0.0, 0.0], (3, 1)), abs=1e-9)
-    assert earth.unknown_dps == 0.0
-
-
-def test_a_constant_attitude_may_travel_in_the_scales():
-    quarter_left = [2.0, 0.0, 0.0, 2.0]  # of any length
-    earth = earth_of(ticks(latitude_deg=0.0, attitude=quarter_left))
-    assert earth.rate_dps == pytest.approx(np.tile([EARTH_DPS, 0.0, 0.0], (3, 1)), abs=1e-9)
+    earth = earth_of(SimpleNamespace(count=np.ones(3), accel=UP, attitude=attitude, scales=scales))
+    assert earth.rate_dps == pytest.approx(np.broadcast_to(rate, (3, 3)) * EARTH_DPS, abs=1e-9)
+    assert earth.unknown_dps == pytest.approx(EARTH_DPS * unknown)
 
 
 @pytest.mark.parametrize(("dps_per_g", "may_be"), [(0.004, True), (0.02, False)])
@@ -189,25 +129,10 @@ def test_the_slope_over_a_coarse_temperature_is_the_slope(step):
     assert abs(better - 1) <= abs(plain - 1)
 
 
-def test_what_wavers_between_steps_is_left_as_it_is():
-    wavering = WARMING + 0.3 * np.random.default_rng(1).normal(size=len(WARMING))
-    assert dequantise(wavering) is wavering
-
-
-def test_a_noise_of_a_sixth_of_a_step_is_seen_through():
-    noise = np.random.default_rng(2).normal(0, 1 / 6, (len(WARMING), 25))
-    read = np.round(8 * WARMING[:, None] + noise).mean(axis=1)
-
-    def error_of_changes(course):
-        return np.diff(
-            (course - 8 * WARMING)[: len(course) // 20 * 20].reshape(-1, 20).mean(1)
-        ).std()
-
-    assert error_of_changes(dequantise(read)) < 0.7 * error_of_changes(read)
-
-
-def test_a_constant_is_left_as_it_is():
-    assert (dequantise(np.full(50, 7.0)) == 7.0).all()
+def test_what_wavers_between_steps_or_on_one_is_left_as_it_is():
+    noise = np.random.default_rng(1).normal(size=len(WARMING))
+    for raw in (WARMING + 0.3 * noise, 7 + 0.05 * noise, np.full(50, 7.0)):
+        assert dequantise(raw) is raw
 
 
 @given(st.lists(st.tuples(st.integers(-40, 40), st.integers(6, 60)), min_size=1, max_size=30))

@@ -62,8 +62,7 @@ def _course(raw: np.ndarray, noise: float) -> np.ndarray:
     """
     whole = np.abs(raw - np.round(raw)) <= _WHOLE
     low = np.floor(raw)
-    share = np.clip(raw - low, _WHOLE, 1.0 - _WHOLE)
-    told = np.clip(low + 0.5 + noise * norm.ppf(share), low, low + 1.0)
+    told = np.clip(low + 0.5 + noise * norm.ppf(raw - low), low, low + 1.0)
     at, value = [], []
     stays = _stays(raw, whole)
     usual = float(np.median([last - first for first, last in stays] or [1])) / 2

@@ -68,8 +68,6 @@ def can_be_earth(effect_dps: np.ndarray, unknown_dps: float) -> bool:
     effect_dps: (n, 3) what it adds in the poses that were seen. The difference between any two of
     them is compared with twice that part, which a part turned over can see.
     """
-    if len(effect_dps) < 2:
-        return False
     some = effect_dps[:: max(1, len(effect_dps) // _POSES)]
     apart = np.linalg.norm(some[:, None] - some[None], axis=2).max()
     return bool(apart <= 2.0 * _UNSURE * unknown_dps)

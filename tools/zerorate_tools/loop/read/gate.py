@@ -9,7 +9,7 @@ from scipy.stats import spearmanr
 from zerorate.settings import DEFAULTS
 
 from ...errors import ZerorateError
-from ...model.model import NAMES, binding_of
+from ...model.model import ACCELERATIONS, binding_of
 from .sessions import OWN_SOURCES, Session
 from .ticks import Ticks
 
@@ -56,19 +56,18 @@ class GateReport:
 
 
 def same_settings(ticks: list[Ticks]) -> None:
-    """Raise CannotClose for a session of another sensor or scale, or a recording given twice."""
-    first = ticks[0]
+    """Raise CannotClose for a session of another chip, sensor or scale, or a recording given
+    twice.
+    """
+    first, seen = _settings(ticks[0]), {ticks[0].digest: ticks[0].name}
     for t in ticks[1:]:
-        for name in _SETTINGS:
-            one, other = getattr(first.scales, name), getattr(t.scales, name)
+        for name, other in _settings(t).items():
+            one = first[name]
             if not _alike(name, one, other):
                 raise CannotClose(
-                    f"{t.name}: {name} is {other}, but {one} in {first.name}; "
-                    f"sessions must be of one device with one setting{_how_alike(name, one, other)}"
+                    f"{t.name}: {name} is {other}, but {one} in {ticks[0].name}; sessions must be "
+                    f"of one device with one setting{_how_alike(name, one, other)}"
                 )
-        _same_chip(first, t)
-    seen: dict[str, str] = {}
-    for t in ticks:
         if t.digest in seen:
             raise CannotClose(
                 f"{t.name} holds the same samples as {seen[t.digest]}; name each recording once"
@@ -76,11 +75,17 @@ def same_settings(ticks: list[Ticks]) -> None:
         seen[t.digest] = t.name
 
 
+def _settings(ticks: Ticks) -> dict[str, Any]:
+    chip = {f"its {name}": code for name, code in vars(binding_of(ticks.scales)).items()}
+    return {name: getattr(ticks.scales, name) for name in _SETTINGS} | chip
+
+
 def _alike(name: str, one: Any, other: Any) -> bool:
-    """Whether two recordings may have these settings: equal, a data rate within five percent."""
+    """Whether two recordings may have these settings: equal, a data rate within five percent, a
+    chip's own where both are known."""
     if name == "odr_hz":
         return abs(one - other) <= _MOST_RATE_APART * max(one, other)
-    return one == other
+    return one == other or (name.startswith("its ") and None in (one, other))
 
 
 def _how_alike(name: str, one: Any, other: Any) -> str:
@@ -88,7 +93,7 @@ def _how_alike(name: str, one: Any, other: Any) -> str:
     if name == "sensor" and "unknown" in (one, other):
         part = other if one == "unknown" else one
         return f": if it is the same part, import the other with --sensor {part}"
-    if "_lsb_" not in name or one is None or other is None:
+    if "_lsb_" not in name or None in (one, other):
         return ""
     return f": if only the imports differ, import both with --{name.replace('_', '-')} N"
 
@@ -115,17 +120,6 @@ def without_long_gaps(ticks: list[Ticks]) -> None:
             raise CannotClose(
                 f"{t.name}: nothing for {gap:.1f} {unit} of its {whole:.1f} {unit}; "
                 "cut it there: what follows is a recording of its own"
-            )
-
-
-def _same_chip(first: Ticks, other: Ticks) -> None:
-    one, its = binding_of(first.scales), binding_of(other.scales)
-    for name in NAMES:
-        a, b = getattr(one, name), getattr(its, name)
-        if a is not None and b is not None and a != b:
-            raise CannotClose(
-                f"{other.name}: its {name} is {b}, but {a} in {first.name}; "
-                "sessions must be of one device with one setting"
             )
 
 
@@ -183,22 +177,22 @@ def usable_channels(sessions: list[Session], report: GateReport) -> None:
     """Take out of the sessions every source that is constant, copied or not in all of them; say so
     in the report.
     """
-    names = list(dict.fromkeys(n for s in sessions for n in s.sources))
-    for name in names:
-        reason = _unusable(name, sessions)
-        if reason:
-            report.dropped[name] = reason
-            for s in sessions:
-                s.sources.pop(name, None)
-    kept = [n for n in names if n not in report.dropped]
-    for i, name in enumerate(kept):
-        twin = next(
-            (o for o in kept[:i] if o not in report.dropped and _copies(o, name, sessions)), None
-        )
-        if twin:
-            report.dropped[name] = f"a copy of {twin}: the two cannot be told apart"
-            for s in sessions:
-                s.sources.pop(name)
+    kept: list[str] = []
+    for name in dict.fromkeys(n for s in sessions for n in s.sources):
+        reason = _unusable(name, sessions) or _twin(name, kept, sessions)
+        if not reason:
+            kept.append(name)
+            continue
+        report.dropped[name] = reason
+        for s in sessions:
+            s.sources.pop(name, None)
+
+
+def _twin(name: str, among: list[str], sessions: list[Session]) -> str | None:
+    twins = (
+        f"a copy of {n}: the two cannot be told apart" for n in among if _copies(n, name, sessions)
+    )
+    return next(twins, None)
 
 
 def _unusable(name: str, sessions: list[Session]) -> str | None:
@@ -207,9 +201,7 @@ def _unusable(name: str, sessions: list[Session]) -> str | None:
         return f"not in {', '.join(missing)}"
     if not all(np.isfinite(s.sources[name]).all() for s in sessions):
         return "no values"
-    if name not in ("acc_x", "acc_y", "acc_z") and all(
-        np.ptp(s.sources[name]) == 0 for s in sessions
-    ):
+    if name not in ACCELERATIONS and not any(np.ptp(s.sources[name]) for s in sessions):
         return "constant"
     if name not in OWN_SOURCES and all(_has_the_noise(s, name) for s in sessions):
         return "it has the gyroscope's own noise: a copy of what is to be explained, no cause of it"
@@ -223,11 +215,9 @@ def _has_the_noise(session: Session, name: str) -> bool:
     own = np.diff(session.sources[name][: len(session.ticks_dps)])
     rates = np.diff(session.ticks_dps, axis=0)
     there = np.isfinite(rates).all(axis=1) & (own != 0)
-    if there.sum() < max(LEAST_BLOCKS, 0.5 * len(own)):
+    if there.sum() < max(LEAST_BLOCKS, 0.5 * len(own)) or not np.ptp(own[there]):
         return False
-    if np.ptp(own[there]) == 0:
-        return False
-    alike = [abs(spearmanr(own[there], r).statistic) for r in rates[there].T if np.ptp(r) > 0]
+    alike = [abs(spearmanr(own[there], r).statistic) for r in rates[there].T if np.ptp(r)]
     return max(alike, default=0.0) > _OWN_NOISE
 
 
@@ -237,4 +227,4 @@ def _copies(a: str, b: str, sessions: list[Session]) -> bool:
     x = np.concatenate([s.sources[a] - s.sources[a].mean() for s in sessions])
     y = np.concatenate([s.sources[b] - s.sources[b].mean() for s in sessions])
     scale = np.sqrt((x @ x) * (y @ y))
-    return bool(scale > 0 and abs(x @ y) / scale > _COPY)
+    return bool(abs(x @ y) > _COPY * scale)

@@ -15,10 +15,8 @@ from scipy.stats import gamma
 LEVEL = 1e-6
 MOST = 3
 _NEAR = 24  # bins to either side that are the neighbourhood
-_NEXT = (
-    2,
-    8,
-)  # bins, from and to, of the nearest of it, beside which a slow hump is no line either
+#: Bins, from and to, of the nearest of it, beside which a slow hump is no line either.
+_NEXT = (2, 8)
 _HUMP = 0.8  # share of the nearest, whose few bins are known badly, that counts
 #: Power of a line to its neighbourhood's: in every session on its best axis, and on average where
 #: a session gives one periodogram, whose continuum is known badly at its slow end.
@@ -69,9 +67,8 @@ def beside_neighbours(s: Spectrum, wide: float) -> np.ndarray:
     flat = s.power / shape
     bias = gamma.median(s.averages) / s.averages
     usual = median_filter(flat, size=(size, 1), mode="nearest")
-    slow = (
-        size // 2 + 1
-    )  # bins whose neighbourhood would reach below 0 Hz: noise has its humps there
+    # bins whose neighbourhood would reach below 0 Hz: noise has its humps there
+    slow = size // 2 + 1
     nearest = median_filter(flat[: 2 * slow], footprint=_ring(wide), mode="mirror")[:slow]
     usual[:slow] = np.maximum(usual[:slow], _HUMP * nearest)
     return flat / np.maximum(usual / bias, 1e-300)

@@ -112,9 +112,8 @@ class Session:
         if self.tick_weight is None:
             return rows.mean(axis=1)
         weight = self.tick_weight.reshape(rows.shape)
-        total = weight.sum(axis=1)
-        counted = (rows * weight).sum(axis=1) / np.where(total > 0, total, 1.0)
-        return np.where(total > 0, counted, rows.mean(axis=1))
+        weight = weight + ~weight.any(axis=1, keepdims=True)
+        return np.average(rows, axis=1, weights=weight)
 
     def time_s(self) -> np.ndarray:
         """(n * ticks_per_block,) seconds since power-on at the middle of each tick."""

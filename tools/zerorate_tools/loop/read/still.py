@@ -105,7 +105,7 @@ def _edges(
     lie on one side alone, off the running middle."""
     if still.sum() < 3:
         return np.zeros(len(still), bool)
-    longest = max(1, round(_EDGE_S / tick_s))
+    longest = int(np.ceil(_EDGE_S / tick_s))
     first, *_, last = np.flatnonzero(still)
     inside = slice(first + longest, max(last - longest, 0))
     around = _running_middle(rate, still, 2 * longest + 1)
@@ -127,27 +127,21 @@ def _is_quiet(ticks: Ticks, there: np.ndarray) -> np.ndarray:
     # as the quietest fifth of spreads of so few samples lies, and as far as they may
     low = np.sqrt(chi2.ppf(_QUIET_SHARE, usual) / usual)
     most = np.maximum(_SPREAD, np.sqrt(chi2.isf(_SPREAD_CHANCE, freedom) / freedom) / low)
-    moving = np.zeros(len(there), bool)
-    for a in range(3):
-        spread = np.sqrt(ticks.rate_var[:, a] * (freedom + 1) / freedom)
-        quiet = np.quantile(spread[there], _QUIET_SHARE)
-        moving |= ~(spread <= most * quiet + 1.0 / ticks.scales.gyro_lsb_per_dps)
-        moving |= spread > _MOST_NOISE_DPS
-    return ~binary_dilation(moving, iterations=1)
+    spread = np.sqrt(ticks.rate_var * (1 + 1 / freedom)[:, None])
+    quiet = np.quantile(spread[there], _QUIET_SHARE, axis=0)
+    least = most[:, None] * quiet + 1.0 / ticks.scales.gyro_lsb_per_dps
+    moving = ~(spread <= np.minimum(least, _MOST_NOISE_DPS)).all(axis=1)
+    return ~binary_dilation(moving)
 
 
 def _running_middle(rate: np.ndarray, quiet: np.ndarray, window: int) -> np.ndarray:
     """(m, 3) median of quiet ticks around each; the whole recording's where there are none."""
-    out = np.empty_like(rate)
-    at = np.flatnonzero(quiet)
-    for a in range(3):
-        if len(at) < 3:
-            out[:, a] = np.nanmedian(rate[:, a])
-            continue
-        values = rate[at, a]
-        middle = median_filter(values, min(window, len(values) | 1), mode="reflect")
-        out[:, a] = np.interp(np.arange(len(rate)), at, middle)
-    return out
+    every, at = np.arange(len(rate)), np.flatnonzero(quiet)
+    if len(at) < 3:
+        return np.broadcast_to(np.nanmedian(rate, axis=0), rate.shape)
+    window = min(window, len(at) | 1)
+    middles = [np.interp(every, at, median_filter(values, window)) for values in rate[at].T]
+    return np.column_stack(middles)
 
 
 def _gravity_holds(ticks: Ticks, there: np.ndarray) -> np.ndarray:
@@ -157,15 +151,11 @@ def _gravity_holds(ticks: Ticks, there: np.ndarray) -> np.ndarray:
     lag = max(1, int(10.0 / ticks.tick_s))
     if len(there) <= 2 * lag:
         return np.ones(len(there), bool)
-    assert ticks.accel is not None, "asked only where gravity was recorded"
-    smooth = np.column_stack(
-        [median_filter(ticks.accel[:, a], 5, mode="nearest") for a in range(3)]
-    )
+    smooth = median_filter(ticks.accel, (5, 1), mode="nearest")
     at = np.arange(len(there))
     before, after = np.maximum(at - lag, 0), np.minimum(at + lag, at[-1])
     turned = np.linalg.norm(smooth[after] - smooth[before], axis=1)
-    usual = np.quantile(turned[lag:-lag], 0.5)
-    return turned < max(8.0 * usual, 0.03)
+    return turned < max(8.0 * np.median(turned[lag:-lag]), 0.03)
 
 
 def deviation_of(path: str | PathLike[str]) -> tuple[np.ndarray, np.ndarray]:
@@ -186,7 +176,7 @@ def still_stretch(path: str | PathLike[str]) -> tuple[np.ndarray, float]:
     """
     own_s = tick_seconds(path, 0.0)
     ticks = ticks_with_spread(path)
-    first, last = longest_run(still_ticks(ticks) & (ticks.count > 0))
+    first, last = max(runs(still_ticks(ticks)), key=np.ptp, default=(0, 0))
     per = max(1, int(ticks.tick_s / max(_FINE_S, own_s) + 1e-6))
     fine = read_ticks(path, ticks.tick_s / per)
     rate = fine.rate[first * per : last * per]
@@ -196,16 +186,10 @@ def still_stretch(path: str | PathLike[str]) -> tuple[np.ndarray, float]:
     if len(rate) < _LEAST_TICKS:
         seconds = _LEAST_TICKS * fine.tick_s
         raise CannotClose(f"{ticks.name}: never still for {seconds:.0f} s; leave it at rest longer")
-    return np.column_stack([gap_filled(rate[:, a]) for a in range(3)]), fine.tick_s
+    return gap_filled(rate), fine.tick_s
 
 
 def ticks_with_spread(path: str | PathLike[str]) -> Ticks:
     """Ticks of at least fifty samples, by whose spread rest is told. Raises BadRecording."""
     own_s = tick_seconds(path, 0.0)
     return read_ticks(path, max(TICK_S, _SAMPLES * own_s) if own_s < 0.25 else TICK_S)
-
-
-def longest_run(mask: np.ndarray) -> tuple[int, int]:
-    """First and one past the last index of the longest run of True; (0, 0) without any."""
-    first, last = max(runs(mask), key=lambda run: run[1] - run[0], default=(0, 0))
-    return int(first), int(last)
