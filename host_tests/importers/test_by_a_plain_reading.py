@@ -10,9 +10,6 @@ from hypothesis import strategies as st
 from zerorate_tools.errors import BadRecording
 from zerorate_tools.importers import Options, parsed_mapping
 from zerorate_tools.importers.importing import _gathered, _How, _ready
-from zerorate_tools.importers.samples.between import _usual_us, refuse_two_recordings
-from zerorate_tools.importers.samples.gather import _are_held
-from zerorate_tools.importers.samples.spool import Spool
 from zerorate_tools.importers.tables.table import Chunk, Table
 from zerorate_tools.numbers import duration
 from zerorate_tools.recordings.checks import GAP
@@ -151,137 +148,10 @@ def test_the_scale_is_the_finest_that_holds_every_reading(rate, force, step_s):
     assert ("row_is_mean_of_s" in scales.more) == (step_s > 2)
 
 
-@pytest.mark.parametrize(
-    ("rates_s", "force_s", "is_one"),
-    [
-        ((0, 100), (5, 95), True),  # 5 s of 100 s are not too many
-        ((0, 100), (5.1, 100), False),
-        ((0, 100), (0, 94.9), False),
-        ((0, 1000), (-20, 1020), True),  # a fiftieth of 1000 s
-        ((0, 1000), (20.1, 1000), False),
-        ((0, 100), None, True),
-    ],
-)
-def test_tables_of_one_recording_begin_and_end_together(rates_s, force_s, is_one):
-    spool = Spool(["t_us", "gx", "ax"])
-    for name, span in (("gx", rates_s), ("ax", force_s or ())):
-        at = np.array(span) * 1e6
-        other = np.full(len(at), np.nan)
-        spool.append({"t_us": at, "gx": other, "ax": other, name: at * 0 + 1})
-    if is_one:
-        refuse_two_recordings(spool, PATH)
-        return
-    with pytest.raises(BadRecording, match="do not begin and end together"):
-        refuse_two_recordings(spool, PATH)
-
-
-@pytest.mark.parametrize("every", [3, 120])
-def test_what_lies_on_lines_is_said_with_the_longest_of_them(every):
-    columns, at = at_rest(1000), np.arange(1000)
-    for name in (*FORCE, "temp_c"):
-        columns[name] = np.where(at % every, np.nan, columns[name])
-    _, _, report = imported(columns)
-    lines = [note for note in report.notes if "interpolated" in note]
-    assert [line.partition("over at most ")[2] for line in lines] == [duration(every / 100)] * 2
-    assert report.rows_written == 1000 and not report.dropped
-
-
-@given(st.floats(0.01, 1000.0), st.lists(st.integers(1, 79), max_size=3))
-def test_rows_that_are_counted_come_at_the_rate_that_is_given(hz, cuts):
-    columns = {name: np.sin(np.arange(80.0)) for name in RATES}
-    found, scales, _ = imported(columns, cuts, hz=hz)
-    assert np.abs(found["t_us"] - np.arange(80) * 1e6 / hz).max() <= 0.5
-    assert scales.odr_hz == hz
-
-
 def at_rest(n):
     """n rows of a sensor of everything, 100 a second."""
     columns = {"t_s": np.arange(n) / 100, **{name: np.sin(np.arange(n) + 1.0) for name in RATES}}
     return columns | {name: np.full(n, 0.577) for name in FORCE} | {"temp_c": np.arange(n) + 1.0}
-
-
-def gathered_of(columns, cuts, **options):
-    how = _How(Options(**options), (), None, 0)
-    return _gathered(table(columns, cuts), PATH, how, None)
-
-
-@pytest.mark.parametrize(
-    ("sizes", "kept"),
-    [
-        ([12_000, 500, 201, 200, 199], [10_000, 200, 200, 200, 199]),
-        ([1] * 400, [1] * 400),
-        ([1] * 401, [1] + [1, 0] * 200),  # every second of many, but for the first
-    ],
-)
-def test_of_a_long_log_the_beginning_of_each_piece_is_looked_at(sizes, kept):
-    n = sum(sizes)
-    found = gathered_of(at_rest(n), np.cumsum(sizes)[:-1].tolist()).found
-    begins = np.cumsum([0, *sizes])
-    expected = [at + k for at, count in zip(begins, kept) for k in range(count)]
-    assert (np.rint(found.looked_at["t_us"] / 10_000) == expected).all()
-    if len(sizes) < 9:
-        assert (found.looked_at["temp"] == np.array(expected) + 1.0).all()
-        assert len(found.looked_at["ax"]) == len(expected)
-
-
-def test_the_usual_interval_of_a_slower_sensor_is_across_pieces():
-    spool, at = Spool(["t_us", "gx", "ax"]), np.array([0, 1, 2, 5, 9, 14, 20, 27, 35, 44, 54.0])
-    for part in (at[:4], at[4:5], np.array([10.0]), at[5:]):
-        there = np.isin(part, at)
-        spool.append({"t_us": part, "gx": part, "ax": np.where(there, 1.0, np.nan)})
-    spool.finish()
-    assert _usual_us(spool, "ax") == np.quantile(np.diff(at), 0.9)
-    steps, spool = np.repeat([1.0, 5.0], [900, 200]), Spool(["t_us", "ax"])
-    spool.append({"t_us": np.cumsum(np.r_[0.0, steps]), "ax": np.ones(1101)})
-    spool.finish()
-    assert _usual_us(spool, "ax") == pytest.approx(np.quantile(steps[:1000], 0.9))
-
-
-@pytest.mark.parametrize(
-    ("kind", "lsb", "divided"),
-    [
-        *(("gyro", 2184.0, False), ("gyro", 2185.0, True), ("accel", 32768.0, False)),
-        *(("accel", 32769.0, True), ("temp", 1e6, False), ("gyro", None, False)),
-    ],
-)
-def test_counts_that_16_bits_cannot_hold_are_divided(kind, lsb, divided):
-    key = {"gyro": "gyro_lsb_per_dps", "accel": "accel_lsb_per_g", "temp": "temp_lsb_per_degc"}
-    names = {"t_s": "t_us", **dict(zip("pqrabcT", "gx gy gz ax ay az temp".split()))}
-    columns = {name: np.rint(1000 * np.sin(np.arange(80) + n)) for n, name in enumerate(names)}
-    columns["t_s"] = np.arange(80.0)
-    mapping = [
-        parsed_mapping(f"{to}={name}:{'s' if to == 't_us' else 'lsb'}")
-        for name, to in names.items()
-    ]
-    options = Options(**{**dict.fromkeys(key.values(), 10.0), key[kind]: lsb})
-    source = _gathered(table(columns), PATH, _How(options, mapping, None, 0), None)
-    assert getattr(source.options, key[kind]) == (None if divided else lsb)
-    assert (kind in source.plan.raw) is not divided
-    others = {k: v for k, v in key.items() if k != kind}
-    assert all(getattr(source.options, k) == 10.0 for k in others.values())
-
-
-@pytest.mark.parametrize(
-    ("rows", "stands", "coarse", "held"),
-    [(100, 2, False, True), (100, 2, True, False), (100, 1, False, False), (1, 1, False, False)],
-)
-def test_rates_that_stand_still_together_are_read_too_often(rows, stands, coarse, held):
-    at = np.arange(rows)
-    places = [at // stands + (n * coarse * at % 3 > 0) for n in range(3)]
-    rates = np.array([np.sin(1.0 + p) for p in places])
-    assert _are_held(rates, 100.0 * at) is held
-    assert not _are_held(rates, 0.0 * at)  # no time goes on between them
-
-
-def test_changes_that_are_as_frequent_as_four_in_five_are_readings_of_their_own():
-    for changes, held in ((79, True), (80, False)):
-        at = np.r_[0, np.cumsum(np.arange(100) < changes)]
-        assert _are_held(np.sin(np.tile(at, (3, 1)) + 1.0), 10.0 * np.arange(101)) is held
-    rates = np.tile(np.sin(np.arange(101) // 2), (3, 1))
-    for alone, held in ((25, True), (26, False)):  # half of them change all three
-        some = rates.copy()
-        some[2, np.arange(101) < 2 * alone] = 7.0
-        assert _are_held(some, 10.0 * np.arange(101)) is held
 
 
 def test_more_than_one_rate_in_a_thousand_beyond_every_sensor_refuses_the_unit():
@@ -289,31 +159,9 @@ def test_more_than_one_rate_in_a_thousand_beyond_every_sensor_refuses_the_unit()
         columns = at_rest(2000)
         columns["gy_dps"][500 : 500 + fast] = 3000.0
         if not refused:
-            found = gathered_of(columns, []).found
-            assert found.samples == 2000 - fast and list(found.dropped.values()) == [fast]
+            report = imported(columns)[2]
+            assert report.rows_written == 2000 - fast and [*report.dropped.values()] == [fast]
             continue
         with pytest.raises(BadRecording, match=f"3000 dps is more .* in {fast} rows") as caught:
-            gathered_of(columns, [])
+            imported(columns)
         assert "did you mean mdps?" in str(caught.value)
-
-
-@pytest.mark.parametrize(("reading", "clipped"), [(250.12, 0), (250.13, 1), (251.0, 1)])
-def test_a_reading_at_the_rail_is_counted_and_kept_in_16_bits(reading, clipped):
-    columns = at_rest(80)
-    columns["gx_dps"][5:7] = reading, -reading
-    found, _, report = imported(columns, gyro_lsb_per_dps=131.0)
-    assert report.clipped == ({"gx": 2 * clipped} if clipped else {})
-    assert found["gx"][5] == min(round(131 * reading), 32767)
-    assert found["gx"][6] == max(round(-131 * reading), -32768)
-    assert report.lines()[0] == "80 samples: 790 ms at 100 Hz, of 80 rows"
-
-
-@pytest.mark.parametrize(("level", "fits"), [(2**31 - 1, True), (2**31, False), (-(2**31), False)])
-def test_a_channel_of_more_than_32_bits_is_refused_by_its_row(level, fits):
-    columns = at_rest(80) | {"level": np.arange(80.0)}
-    columns["level"][7] = level
-    if fits:
-        assert imported(columns)[0]["level"][7] == level
-        return
-    with pytest.raises(BadRecording, match="row 8: level is .*no integer of 32 bits"):
-        imported(columns)

@@ -1,18 +1,22 @@
 """Binary logs of others; host_tests/hostile tries the process of its own that reads each."""
 
+from collections import Counter
+from pathlib import Path
+from types import SimpleNamespace
+
 import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
-import scipy.io
 from zerorate_bench.foreign_logs import binary as foreign_files
 from zerorate_tools.errors import BadRecording
-from zerorate_tools.importers import Options, parsed_mapping, read_foreign
-from zerorate_tools.importers.logs import apart
+from zerorate_tools.importers import read_foreign
+from zerorate_tools.importers.logs import apart, columnar, json_file, messages
 
 from host_tests.hostile.many_logs import in_this_process
 
-from .test_odd_files import told
+from .test_tables import told
 
-RNG = np.random.default_rng(5)
 G = 9.80665
 
 
@@ -23,42 +27,19 @@ def child(monkeypatch):
     monkeypatch.setattr("resource.setrlimit", lambda *limits: None)
 
 
-@pytest.mark.parametrize("turned", [False, True], ids=["a row a sample", "a column a sample"])
-def test_a_mat_is_a_table_of_its_variables(tmp_path, turned):
-    rates = RNG.normal(size=(50, 3))
-    found = {"w": rates.T if turned else rates, "t": np.arange(50.0), "note": "hello"}
-    scipy.io.savemat(tmp_path / "in.mat", found)
-    words = ["t_us=t:s", *(f"g{a}=w[{i}]:dps" for i, a in enumerate("xyz"))]
-    mapping = [parsed_mapping(word) for word in words]
-    recording, _ = read_foreign(tmp_path / "in.mat", mapping=mapping)
-    assert recording.columns["gy"].tolist() == np.rint(rates[:, 1] * 131).tolist()
-    (tmp_path / "bad.mat").write_bytes(b"nothing of the kind" * 20)
-    with pytest.raises(BadRecording, match="no .mat file"):
-        read_foreign(tmp_path / "bad.mat", mapping=mapping)
-
-
-def test_a_variable_of_a_mat_that_begins_with_time_is_offered_so(tmp_path):
-    counted = np.column_stack([np.arange(50) / 100, RNG.normal(33000, 20, size=(50, 3))])
-    scipy.io.savemat(tmp_path / "in.mat", {"omega": counted})
-    offered = r"t_us=omega\[0\]:s --map gx=omega\[1\]:lsb --map gy=omega\[2\]:lsb"
-    with pytest.raises(BadRecording, match=f"if these are rates: --map {offered}"):
-        read_foreign(tmp_path / "in.mat")
-
-
-def test_a_mat_of_arrays_of_three_is_read_by_their_names(tmp_path):
-    arrays = {"Gyr_noise": RNG.normal(size=(50, 3)), "Acc_noise": RNG.normal(size=(50, 3))}
-    scipy.io.savemat(tmp_path / "in.mat", arrays)
-    with pytest.raises(BadRecording, match=r"units of columns 'Gyr_noise\[0\]'.* are not known"):
-        read_foreign(tmp_path / "in.mat", options=Options(hz=100.0))
-
-
-def test_the_fields_of_a_structure_are_columns(tmp_path):
-    n = 40
-    imu = {"t": np.arange(n)[:, None] / 100, "wb": np.full((n, 3), 0.01)}
-    scipy.io.savemat(tmp_path / "in.mat", {"imu1": imu})
-    words = ("t_us=imu1.t:s", *(f"g{a}=imu1.wb[{i}]:rad/s" for i, a in enumerate("xyz")))
-    recording, _ = read_foreign(tmp_path / "in.mat", mapping=[*map(parsed_mapping, words)])
-    assert len(recording) == n and recording.scales.odr_hz == pytest.approx(100)
+@pytest.mark.parametrize(
+    ("name", "content", "said"),
+    [
+        ("bad.mat", b"nothing of the kind" * 20, "no .mat file"),
+        ("bad.ulg", b"ULoX" * 50, "no ULog"),
+        ("in.bbl", bytes(range(256)) * 9, "no blackbox log, or damaged; copy the file again"),
+        ("a#b.db3", b"SQLite format 3\0" + bytes(range(256)) * 40, "no bag of ROS 2"),
+    ],
+)
+def test_what_is_called_as_a_log_and_is_none_says_so(tmp_path, name, content, said):
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(BadRecording, match=said):
+        read_foreign(tmp_path / name)
 
 
 def test_a_ulog_with_the_gyro_once_a_second_takes_the_combined_sensors(tmp_path):
@@ -77,16 +58,6 @@ def test_a_ulog_with_the_gyro_once_a_second_takes_the_combined_sensors(tmp_path)
     recording, report = read_foreign(tmp_path / "in.ulg")
     assert len(recording) == n and recording.temp_degc() == pytest.approx(41.5, abs=0.01)
     assert told(report, "after PX4's own offsets")
-    gyro["temperature"] = ("float", [0.0] * 3)
-    foreign_files.ulog(tmp_path / "in.ulg", {"sensor_gyro": gyro, "sensor_combined": combined})
-    _, report = read_foreign(tmp_path / "in.ulg")
-    assert told(report, "doubtful: the temperature is 0 throughout")
-
-
-def test_a_ulog_that_is_none_or_lacks_the_sensor_is_refused(tmp_path):
-    (tmp_path / "bad.ulg").write_bytes(b"ULoX" * 50)
-    with pytest.raises(BadRecording, match="no ULog"):
-        read_foreign(tmp_path / "bad.ulg")
     foreign_files.ulog(tmp_path / "in.ulg", {"other": {"timestamp": ("uint64_t", [1])}})
     with pytest.raises(BadRecording, match="neither sensor_gyro nor sensor_combined"):
         read_foreign(tmp_path / "in.ulg")
@@ -97,34 +68,15 @@ def test_a_dataflash_log_gives_one_instance(tmp_path):
     foreign_files.dataflash(tmp_path / "in.bin", rows)
     recording, report = read_foreign(tmp_path / "in.bin", instance=1)
     assert recording.columns["t_us"].tolist() == [row[0] for row in rows[1::2]]
-    expected = np.degrees([row[2] for row in rows[1::2]])
-    assert recording.gyro_dps()[:, 0] == pytest.approx(expected, abs=0.005)
     assert recording.temp_degc() == pytest.approx([36, 38, 40, 42, 44])
     assert told(report, "INS_GYROFFS")
     with pytest.raises(BadRecording, match="no IMU message of instance 2"):
         read_foreign(tmp_path / "in.bin", instance=2)
 
 
-def test_units_that_a_log_states_are_not_doubted(tmp_path):
-    shaking = np.radians(RNG.normal(0, 3.0, size=(500, 3)))
-    rows = [(i * 40_000, 0, *rate, 0.0, 0.0, -G, 35.0) for i, rate in enumerate(shaking)]
-    foreign_files.dataflash(tmp_path / "in.bin", rows)
-    assert not told(read_foreign(tmp_path / "in.bin")[1], "did you mean")
-
-
-@pytest.fixture
-def bag_of(tmp_path):
-    """A bag of a kind (ros1, ros2, db3, mcap) with 200 Hz of Imu, and 1 Hz of Temperature."""
-
-    def make(kind, **options):
-        return foreign_files.bag(tmp_path / "bag", kind, **options)
-
-    return make
-
-
-def test_a_bag_of_other_topics_says_what_it_has(bag_of):
+def test_a_bag_of_other_topics_says_what_it_has(tmp_path):
     with pytest.raises(BadRecording, match="no topic of type sensor_msgs/Imu.*/imu/temperature"):
-        read_foreign(bag_of("ros2", imu=False))
+        read_foreign(foreign_files.bag(tmp_path / "bag", "ros2", imu=False))
 
 
 def test_an_imu_within_the_message_of_a_driver_is_read(tmp_path):
@@ -133,7 +85,77 @@ def test_an_imu_within_the_message_of_a_driver_is_read(tmp_path):
     assert recording.gyro_dps()[0, 0] == pytest.approx(np.degrees(0.01), abs=0.005)
 
 
-def test_what_is_called_bbl_and_is_none_says_so(tmp_path):
-    (tmp_path / "in.bbl").write_bytes(bytes(range(256)) * 9)
-    with pytest.raises(BadRecording, match="no blackbox log, or damaged; copy the file again"):
-        read_foreign(tmp_path / "in.bbl")
+def test_a_column_that_is_there_twice_is_refused_by_its_name(tmp_path):
+    columns = [pa.array([1.0]), pa.array([2.0]), pa.array([3.0])]
+    pq.write_table(pa.Table.from_arrays(columns, ["gx", "gy", "gx"]), tmp_path / "in.parquet")
+    with pytest.raises(BadRecording, match="the column 'gx' is there twice"):
+        columnar.read(tmp_path / "in.parquet")
+
+
+@pytest.mark.parametrize("line", [b"(1, 2", b"{[]: 1, 'a': 2}", b"(" * 3000, b"[" * 10**6, b"'"])
+def test_a_line_that_is_neither_json_nor_python_is_counted(line):
+    dropped = Counter()
+    assert json_file._object(line, dropped) is None and sum(dropped.values()) == 1
+
+
+def stamped(**stamp):
+    """A message of an IMU whose header has that stamp."""
+    vector = SimpleNamespace(x=1.0, y=2.0, z=3.0)
+    return SimpleNamespace(
+        header=SimpleNamespace(stamp=SimpleNamespace(**stamp)),
+        angular_velocity=vector,
+        linear_acceleration=vector,
+    )
+
+
+def table_of(*decoded):
+    logged = [("/imu", 7000, one) for one in decoded]
+    return messages.table_of_messages(Path("bag"), {"/imu": "my/Imu"}, lambda: iter(logged))
+
+
+@pytest.mark.parametrize(
+    ("message", "t_us"),
+    [
+        (stamped(sec=3, nanosec=5000), 3000005.0),
+        (stamped(sec=3, nsec=5000), 3000005.0),
+        (stamped(sec=0, nanosec=5000), 5.0),
+        (stamped(sec=3, nanosec=0), 3000000.0),
+        (stamped(sec=0, nanosec=0), 7.0),  # no clock was set: when it was logged
+        (stamped(sec=3), 7.0),
+        ({"angular_velocity": {"x": 1.0, "y": 2.0, "z": 3.0}}, 7.0),
+    ],
+)
+def test_a_message_without_a_whole_stamp_has_the_time_when_it_was_logged(message, t_us):
+    table = table_of(lambda: message)
+    (chunk,) = table.chunks(table.names)
+    assert chunk.columns["t_us"].tolist() == [t_us]
+    assert chunk.columns["/imu/angular_velocity/z"].tolist() == [3.0]
+
+
+def breaks(after, error):
+    yield from range(after)
+    raise error
+
+
+def test_what_comes_before_damage_is_taken_and_said():
+    error, notes = ValueError("bad  chunk\n" + "x" * 99), ["before"]
+    assert list(messages.as_far_as_it_goes(breaks(3, error), notes)) == [0, 1, 2]
+    words = f"cut off or damaged after 3 messages (bad chunk {'x' * 50}): those are taken"
+    assert notes == ["before", words]
+    with pytest.raises(ValueError, match="bad"):
+        list(messages.as_far_as_it_goes(breaks(0, error), notes))
+
+
+def test_a_lack_of_memory_is_no_damage():
+    with pytest.raises(MemoryError):
+        list(messages.as_far_as_it_goes(breaks(3, MemoryError()), []))
+    table = table_of(lambda: next(breaks(0, MemoryError())))
+    with pytest.raises(MemoryError):
+        list(table.chunks(table.names))
+
+
+def test_a_folder_is_as_large_as_the_files_in_it(tmp_path):
+    (tmp_path / "of").mkdir()
+    (tmp_path / "a").write_bytes(bytes(7))
+    (tmp_path / "of" / "b").write_bytes(bytes(30))
+    assert (apart._size(tmp_path), apart._size(tmp_path / "a")) == (37, 7)

@@ -1,4 +1,4 @@
-"""Foreign recordings come out as integers in LSB, and every loss is told."""
+"""Tables as people have them come out as integers in LSB, and every loss is told."""
 
 from functools import reduce
 from operator import xor
@@ -6,10 +6,8 @@ from operator import xor
 import numpy as np
 import pandas as pd
 import pytest
-from zerorate_tools.errors import BadRecording
 from zerorate_tools.importers import Options, import_recording, parsed_mapping, read_foreign
 from zerorate_tools.importers.tables import checked_lines, delimited
-from zerorate_tools.importers.tables.sniffing import _says_its_names
 from zerorate_tools.recordings import (
     Scales,
     read_recording,
@@ -18,145 +16,107 @@ from zerorate_tools.recordings import (
 )
 from zerorate_tools.recordings.checks import GAP
 
-from .test_odd_files import told
+HEAD = "t_s,gx_dps,gy_dps,gz_dps"
+RATES = HEAD.split(",")[1:]
 
-G = 9.80665
+
+def table(n=2000, hz=100.0):
+    """A rest with usual names and units in them."""
+    rng = np.random.default_rng(3)
+    columns = {"t_s": np.arange(n) / hz}
+    columns |= {name: 0.8 + 0.05 * rng.standard_normal(n) for name in RATES}
+    columns |= {f"a{a}_g": (a == "z") + 0.004 * rng.standard_normal(n) for a in "xyz"}
+    return pd.DataFrame(columns | {"temp_c": 25 + 0.001 * np.arange(n)})
 
 
-def table(path, **columns):
-    """A CSV of these columns."""
-    pd.DataFrame(columns).to_csv(path, index=False)
-    return path
+def rates(names, n=2000):
+    """The time and the rates of that rest under these names; what is named beyond them is 1."""
+    frame = table(n)[HEAD.split(",")].set_axis(names[:4], axis=1)
+    return frame.assign(**dict.fromkeys(names[4:], 1.0))
+
+
+def read(tmp_path, frame, name="in.csv", mapping="", **options):
+    """What an import makes of a frame, or of a text."""
+    if isinstance(frame, pd.DataFrame):
+        frame = frame.to_csv(index=False)
+    content = frame if isinstance(frame, bytes) else f"{frame.rstrip()}\n".encode()
+    (tmp_path / name).write_bytes(content)
+    words = [parsed_mapping(word) for word in mapping.split()]
+    return read_foreign(tmp_path / name, mapping=words, **options)
+
+
+def lines(rows):
+    """A text of numbers without a head."""
+    return "\n".join(",".join(f"{v:.6g}" for v in row) for row in rows)
+
+
+def told(report, words):
+    return any(words in line for line in report.lines())
 
 
 def test_a_mapping_with_units_gives_integers(tmp_path):
     n = np.arange(4.0)
-    source = table(
-        tmp_path / "in.csv", ms=n * 10, wx=n * 0.1, wy=n * 0, wz=-n, fx=n * 0, fy=n * 0,
-        fz=n * 0 + G, die=n + 300.0, volts=n * 0 + 3.3,
-    )  # fmt: skip
+    columns = {"ms": n * 10, "wx": n * 0.1, "wy": n * 0, "wz": -n, "fx": n * 0, "fy": n * 0,
+               "fz": n * 0 + 9.80665, "die": 1.8 * n + 80.33, "volts": n * 0 + 3.3}  # fmt: skip
     words = (
-        "t_us=ms:ms gx=wx:rad/s gy=wy:rad/s gz=wz:dps ax=fx:m/s2 ay=fy:m/s2 az=fz:m/s2 "
-        "temp=die:k vdd_mv=volts:x1000"
+        "t_us=ms:ms gx=wx:rad/s gy=-wy:rad/s gz=-wz:dps ax=fx:m/s2 ay=fy:m/s2 az=fz:m/s2 "
+        "temp=die:degf vdd_mv=volts:x1000"
     )
-    recording, _ = read_foreign(
-        source,
-        mapping=[parsed_mapping(word) for word in words.split()],
-        options=Options(sensor="MPU-6050", gyro_lsb_per_dps=131, accel_lsb_per_g=16384,
-                        temp_lsb_per_degc=340, temp_offset_degc=36.53),
-    )  # fmt: skip
-    c = recording.columns
-    assert c["t_us"].tolist() == [0, 10_000, 20_000, 30_000]
-    assert c["gx"].tolist() == np.rint(np.degrees(n * 0.1) * 131).tolist()
-    assert c["gz"].tolist() == [0, -131, -262, -393]
-    assert c["az"].tolist() == [16384] * 4
-    assert c["temp"].tolist() == np.rint((n + 26.85 - 36.53) * 340).tolist()
-    assert c["vdd_mv"].tolist() == [3300] * 4
+    options = Options(sensor="MPU-6050", gyro_lsb_per_dps=131, accel_lsb_per_g=16384,
+                      temp_lsb_per_degc=340, temp_offset_degc=36.53)  # fmt: skip
+    recording, _ = read(tmp_path, pd.DataFrame(columns), mapping=words, options=options)
+    found = {name: values.tolist() for name, values in recording.columns.items()}
+    assert found["t_us"] == [0, 10_000, 20_000, 30_000]
+    assert found["gx"] == np.rint(np.degrees(n * 0.1) * 131).tolist()
+    assert found["gz"] == [0, 131, 262, 393]
+    assert found["az"] == [16384] * 4 and found["vdd_mv"] == [3300] * 4
+    assert found["temp"] == np.rint((n + 26.85 - 36.53) * 340).tolist()
     assert recording.scales.sensor == "MPU-6050"
     assert recording.scales.odr_hz == pytest.approx(100)
 
 
-def test_usual_names_and_units_in_names_need_no_mapping(tmp_path):
-    source = table(tmp_path / "in.csv", **{"time [s]": [0, 1], "gyro_x [rad/s]": [0.1, 0.2],
-                   "gyro_y [rad/s]": [0.1, 0.2], "gyro_z [rad/s]": [0.1, 0.2]})  # fmt: skip
-    recording, report = read_foreign(source)
-    assert recording.columns["gx"].tolist() == np.rint(np.degrees([0.1, 0.2]) * 131).tolist()
-    assert told(report, "Stored at the +-250 dps scale (fastest rate: 11.46 dps)")
-    assert told(report, "no temperature") and told(report, "no acceleration")
-
-
-def test_raw_counts_stay_as_they_are_and_need_their_scale(tmp_path):
-    source = table(tmp_path / "in.csv", gx=[7, -9], gy=[1, 1], gz=[0, 3])
-    with pytest.raises(
-        BadRecording, match="units of columns 'gx', 'gy', 'gz' are not.*--gyro-unit dps"
-    ):
-        read_foreign(source)
-    with pytest.raises(BadRecording, match="unit of column 'gx' cannot be 'knots'"):
-        read_foreign(source, units={"gyro": "knots"})
-    with pytest.raises(BadRecording, match="scale of raw counts.*give --gyro-lsb-per-dps 131 "):
-        read_foreign(source, units={"gyro": "lsb"}, options=Options(hz=100))
-    scaled = Options(hz=100, gyro_lsb_per_dps=16.4)
-    recording, _ = read_foreign(source, units={"gyro": "lsb"}, options=scaled)
-    assert recording.columns["gx"].tolist() == [7, -9]
-    assert recording.columns["t_us"].tolist() == [0, 10_000]
-
-
 def test_rows_that_are_no_samples_are_dropped_and_counted(tmp_path):
-    source = table(
-        tmp_path / "in.csv",
-        t_s=[0, 1, 2, 3, 2.5, 4, np.nan],
-        gx_dps=[1, 0, 1, 1, 1, np.nan, 1],
-        gy_dps=[1, 0, 1, 300, 1, 1, 1],
-        gz_dps=[1, 0, 1, 1, 1, 1, 1],
-        temp_c=[20, 0, 20, 20, 20, 20, 20],
-    )
-    recording, report = read_foreign(source, options=Options(gyro_lsb_per_dps=131))
+    columns = {
+        "t_s": [0, 1, 2, 3, 2.5, 4, np.nan],
+        "gx_dps": [1, 0, 1, 1, 1, np.nan, 1],
+        "gy_dps": [1, 0, 1, 300, 1, 1, 1],
+        "gz_dps": [1, 0, 1, 1, 1, 1, 1],
+        "temp_c": [20, 0, 20, 20, 20, 20, 20],
+    }
+    recording, report = read(tmp_path, pd.DataFrame(columns), options=Options(gyro_lsb_per_dps=131))
     assert recording.columns["t_us"].tolist() == [0, 2_000_000, 2_500_000, 3_000_000]
     assert report.rows_read == 7 and report.rows_written == 4
-    assert told(report, "dropped 1 rows: all readings are zero")
+    assert report.dropped == dict.fromkeys(
+        ("all readings are zero", "a reading is no number", "the time stamp is no number"), 1
+    )
     assert told(report, "time goes back at 1 rows: sorted by time")
-    assert told(report, "dropped 1 rows: a reading is no number")
-    assert told(report, "dropped 1 rows: the time stamp is no number")
     assert told(report, "gy: 1 readings at the end of the 16-bit range (clipped)")
-
-
-def test_three_zero_rates_alone_may_be_a_sample(tmp_path):
-    source = table(tmp_path / "in.csv", t_s=[0, 1], gx_dps=[1, 0], gy_dps=[0, 0], gz_dps=[0, 0])
-    assert len(read_foreign(source)[0]) == 2
-
-
-@pytest.mark.parametrize(
-    ("text", "complaint"),
-    [
-        ("", "empty file"),
-        ("t_s,gx_dps,gy_dps,gz_dps\n", "no data row"),
-        ("a,b\n1,2\n", "no column for gx, gy, gz; map it: --map gx=COLUMN"),
-        ("gx_dps,gy_dps,gz_dps\n1,2,3\n", "no time stamps; give --hz"),
-        ("t_s,gx_dps,gy_dps,gz_dps\n1,2,3,4\n", "time stands still"),
-        ("t_s,gx_dps,gy_dps,gz_dps,temp_c\n1,0,0,0,0\n", "no sample is left; 1 rows: all readings"),
-    ],
-)
-def test_a_table_that_cannot_be_imported_says_why(tmp_path, text, complaint):
-    (tmp_path / "in.csv").write_text(text)
-    with pytest.raises(BadRecording, match=complaint):
-        import_recording(tmp_path / "in.csv", tmp_path / "out.parquet")
-    assert not (tmp_path / "out.parquet").exists()
-
-
-@pytest.mark.parametrize(
-    ("words", "complaint"),
-    [
-        ("gx", "no mapping: write gx=COLUMN:UNIT"),
-        ("gx=w:furlongs", "unit 'furlongs' of gx is none of dps"),
-        ("load=w:dps", "an extra channel takes a factor: load=w:x100"),
-        ("t=time:s", "t is none of t_us, gx, .*, temp, and"),
-    ],
-)
-def test_a_mapping_that_is_none_says_how(words, complaint):
-    with pytest.raises(ValueError, match=complaint):
-        parsed_mapping(words)
-
-
-def test_a_column_that_is_not_there_and_a_channel_too_large_are_named(tmp_path):
-    source = table(tmp_path / "in.csv", t_s=[0, 1], gx_dps=[1, 1], gy_dps=[1, 1], gz_dps=[1, 1],
-                   load=[1, 3e9])  # fmt: skip
-    with pytest.raises(BadRecording, match="no column 'weight'; choose of t_s, gx_dps"):
-        read_foreign(source, mapping=[parsed_mapping("load=weight")])
-    with pytest.raises(
-        BadRecording, match=r"row 2: load is 3e\+09, no integer of 32 bits; scale it down"
-    ):
-        read_foreign(source, mapping=[parsed_mapping("load=load")])
+    # three zero rates alone may be a sample
+    assert len(read(tmp_path, f"{HEAD}\n0,1,0,0\n1,0,0,0")[0]) == 2
 
 
 @pytest.mark.parametrize("name", ["out.parquet", "out.csv.gz"])
 def test_gaps_of_a_channel_stay_gaps_however_often_it_is_imported(tmp_path, name):
-    source = table(tmp_path / "in.csv", t_s=[0, 1], gx_dps=[1, 1], gy_dps=[1, 1], gz_dps=[1, 1],
-                   load=[1, np.nan])  # fmt: skip
-    import_recording(source, tmp_path / "first.csv", mapping=[parsed_mapping("load=load")])
+    (tmp_path / "in.csv").write_text(f"{HEAD},load\n0,1,1,1,1\n1,1,1,1,\n")
+    mapping = [parsed_mapping("load=load")]
+    import_recording(tmp_path / "in.csv", tmp_path / "first.csv", mapping=mapping)
     import_recording(tmp_path / "first.csv", tmp_path / name)
     assert read_recording(tmp_path / name, keep_gaps=True).columns["load"].tolist() == [1, GAP]
-    with pytest.raises(BadRecording, match="row 2: load has no value"):
-        read_recording(tmp_path / name)
+
+
+def test_a_recording_in_this_form_only_changes_its_format(tmp_path):
+    columns = {name: np.arange(5) for name in ("gx", "gy", "gz", "load")}
+    columns["t_us"] = 3000 + 100_000 * np.arange(5)
+    write_recording(recording_from_columns(columns, Scales("X", 10, 77)), tmp_path / "in.csv")
+    report = import_recording(tmp_path / "in.csv", tmp_path / "out.parquet")
+    recording = read_recording(tmp_path / "out.parquet")
+    assert recording.columns["load"].tolist() == [0, 1, 2, 3, 4]
+    assert recording.scales.gyro_lsb_per_dps == 77
+    assert report.notes == ["a recording in this form already"]
+    assert report.lines()[0] == "5 samples: 400 ms at 10 Hz, of 5 rows"
+    for told_more in ({"options": Options(hz=5.0)}, {"units": {"gyro": "dps"}}):
+        report = read_foreign(tmp_path / "in.csv", **told_more)[1]
+        assert told(report, "its own scales and times are kept") and report.odr_hz == 10
 
 
 @pytest.mark.parametrize("block", [60, 500, 1 << 20])
@@ -174,61 +134,193 @@ def test_a_line_that_is_no_row_keeps_its_place_in_blocks_of_any_size(
     (tmp_path / "in.csv").write_text("\n".join([*head, *rows, ""]))
     for reader in (checked_lines, delimited):
         monkeypatch.setattr(reader, "_BLOCK_BYTES", block)
-    read = checked_lines.checked_lines if checked else delimited.delimited
-    table = read(tmp_path / "in.csv")
-    name = table.names[2]
-    chunks = list(table.chunks([name]))
+    opened = checked_lines.checked_lines if checked else delimited.delimited
+    found = opened(tmp_path / "in.csv")
+    name = found.names[2]
+    chunks = list(found.chunks([name]))
     places = np.concatenate([chunk.place for chunk in chunks])
     values = np.concatenate([chunk.columns[name] for chunk in chunks])
     whole = [number for number in range(60) if number not in lost]
-    assert places.tolist() == values.tolist() == whole and sum(table.dropped.values()) == len(lost)
+    assert places.tolist() == values.tolist() == whole and sum(found.dropped.values()) == len(lost)
+
+
+@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16", "utf-16-le", "latin-1"])
+def test_any_encoding_is_read(tmp_path, encoding):
+    frame = table(200).rename(columns={"temp_c": "temp [°C]"})
+    recording, _ = read(tmp_path, frame.to_csv(index=False).encode(encoding))
+    assert recording.temp_degc()[0] == pytest.approx(25)
+
+
+THREE = table(50)[RATES].to_numpy()
+ROWS = [f"{i / 100},{x:.4f},{y:.4f},{z:.4f}" for i, (x, y, z) in enumerate(THREE)]
+PRINTED = [str({"t": i / 100, "gyro": dict(zip("xyz", row.tolist()))})
+           for i, row in enumerate(THREE)]  # fmt: skip
+TAGGED = ["{}" + " ".join(f"{n}={v:.4f}" for n, v in zip(RATES, row)) for row in THREE]
+SERIAL = ["=~= PuTTY log 2026.05.08 =~=", "08,0.8,0.9", *(f"25,{row}" for row in ROWS)]
+ESP = [f"\x1b[0;32mI ({320 + 10 * i}) imu: gx={r[0]} gy={r[1]} gz={r[2]}\x1b[0m"
+       for i, r in enumerate(THREE)]  # fmt: skip
+COUNTED, BY_NUMBER = Options(hz=100.0), "t_us=1:s gx=2:dps gy=3:dps gz=4:dps"
 
 
 @pytest.mark.parametrize(
-    ("line", "says"),
+    ("text", "mapping", "options", "lost"),
     [
-        *(("Gyro X,3,Y,4,Z,5", True), ("Gyro X,1,Y,2,Z,3", False), ("7,3,Y,4,8,5", False)),
-        *(("Gyro X,3,Y,4", False), (",3,,4,,5", False)),
+        ([HEAD, *ROWS[:20], "# somebody knocked", "  ", "", *ROWS[20:]], "", None, 0),
+        ([f"# {HEAD}", *ROWS, "# gx_dps,gy_dps,gz_dps,t_s"], "", None, 1),
+        (ROWS, BY_NUMBER, None, 0),
+        (SERIAL, "temp=1:degc t_us=2:s gx=3:dps gy=4:dps gz=5:dps", None, 1),
+        ([*PRINTED, PRINTED[0][:30]],
+         "t_us=t:s gx=gyro.x:dps gy=gyro.y:dps gz=gyro.z:dps", None, 2),
+        ([str(row.tolist()) for row in THREE], "gx=[0]:dps gy=[1]:dps gz=[2]:dps", COUNTED, 0),
+        ([str(tuple(row)) for row in THREE.tolist()], "gx=[0]:dps gy=[1]:dps gz=[2]:dps", COUNTED,
+         0),
+        ([row.format("[IMU DEBUG] ") for row in TAGGED], "", COUNTED, 0),
+        ([row.format("[12:00:01.250]") for row in TAGGED], "", COUNTED, 0),
+        (["rst:0x1 (POWERON_RESET)", "I (28) boot: ESP-IDF v5.1", *ESP],
+         "gx=gx:dps gy=gy:dps gz=gz:dps", None, 0),
+    ],
+    ids="comments commented-head no-head serial dicts lists tuples tag clock-tag esp-idf".split(),
+)  # fmt: skip
+def test_text_of_people_is_read(tmp_path, text, mapping, options, lost):
+    recording, report = read(tmp_path, "\n".join(text), "in.log", mapping, options=options)
+    assert recording.gyro_dps() == pytest.approx(THREE, abs=0.01)
+    assert recording.scales.odr_hz == pytest.approx(100) and sum(report.dropped.values()) == lost
+
+
+def test_rows_without_readings_have_no_say_about_the_clock(tmp_path):
+    rows = "".join(f"{1.4e18 + i * 5e6:.0f},0.8,0.8,0.9\n" for i in range(50))
+    notes = "1403636763.853,,,\n1403636763.848,,,\n"
+    recording, report = read(tmp_path, "timestamp [ns],gx_dps,gy_dps,gz_dps\n" + rows + notes)
+    assert len(recording) == 50 and report.dropped["no reading of these columns"] == 2
+    assert not told(report, "ran over")
+
+
+def test_the_digits_of_a_channel_are_kept_by_the_words_that_are_offered(tmp_path):
+    turn = np.linspace(0.0, 3.0, 500)
+    frame = table(500).assign(quat_w=np.cos(turn))
+    with pytest.raises(Exception, match="qw loses its digits.*--map qw=quat_w:x10000") as no:
+        read(tmp_path, frame, mapping="qw=quat_w")
+    recording, _ = read(tmp_path, frame, mapping=str(no.value).rpartition("--map ")[2])
+    assert recording.columns["qw"] == pytest.approx(1e4 * frame["quat_w"], abs=0.51)
+
+
+@pytest.mark.parametrize("names", ["QuatI QuatJ QuatK QuatReal", "qx qy qz qw"])
+def test_an_attitude_is_offered_with_words_that_keep_its_digits(tmp_path, names):
+    turn = np.linspace(0.0, 0.04, 500)
+    parts = np.array([np.sin(turn), 0 * turn, 0 * turn, np.cos(turn)])
+    frame = table(500).assign(**dict(zip(names.split(), parts)))
+    _, report = read(tmp_path, frame)
+    (offered,) = [line for line in report.lines() if "an attitude" in line]
+    recording, _ = read(tmp_path, frame, mapping=offered.rpartition("up:")[2].replace("--map", ""))
+    for name, part in zip(("qx", "qy", "qz", "qw"), parts):
+        assert recording.columns[name] == pytest.approx(1e6 * part, abs=0.51)
+
+
+CLOCK = [f"12:00:{t:06.3f}" for t in table(500)["t_s"]]
+RARE = pd.Timestamp("2021-03-05T23:50") + pd.to_timedelta(np.arange(500) * 15, unit="s")
+SINCE_NS = 1_777_636_800_990_000_000 + np.arange(500) * 10_000_000
+SECONDS = pd.Timestamp("2026-05-01") + pd.to_timedelta(np.arange(500) // 100, "s")
+
+
+@pytest.mark.parametrize(
+    ("columns", "mapping", "step_us"),
+    [
+        ({"Date": "05/05/2021", "Time": CLOCK}, "", 10_000),  # a day beside its time
+        ({"Date": "20210505", "Time": CLOCK}, "", 10_000),
+        ({"delay (s)": 0.5, "Zeit (s)": np.arange(500) / 100}, "", 10_000),
+        ({"delay (s)": 0.5, "uptime_ms": np.arange(500) * 10}, "", 10_000),
+        ({"hhmmss.ms": CLOCK}, "", 10_000),
+        ({"time": RARE.strftime("%H:%M:%S")}, "", 15_000_000),  # over midnight
+        ({"header.stamp.sec": SINCE_NS // 10**9, "header.stamp.nanosec": SINCE_NS % 10**9}, "",
+         10_000),
+        ({"A": SINCE_NS // 10**9, "B": SINCE_NS % 10**9}, "t_us=A:s+B:ns", 10_000),
+        ({"Timestamp": SECONDS, "Milliseconds": np.arange(500) * 10}, "", 10_000),
+    ],
+)  # fmt: skip
+def test_the_time_is_found_among_columns(tmp_path, columns, mapping, step_us):
+    frame = table(500).drop(columns="t_s")
+    recording, _ = read(tmp_path, pd.DataFrame(columns | dict(frame)), mapping=mapping)
+    assert np.abs(np.diff(recording.columns["t_us"]) - step_us).max() <= 1
+
+
+def test_a_rate_overrides_a_time_column_and_says_so(tmp_path):
+    frame = table(50).rename(columns={"t_s": "when"}).assign(timestamp="yesterday")
+    recording, report = read(tmp_path, frame, options=Options(hz=4))
+    assert recording.columns["t_us"][1] == 250_000
+    assert told(report, "time column 'timestamp' left aside, as --hz is given")
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        *("imu.gyro.{}", "w{}", "gyr_{}", "AngVel{}", "Gyroscope_{}", "{}gyro", "Gy{}", "g{}_mean"),
+        *("w_RS_S_{} [rad s^-1]", "raw_angular_rate_{}_rad_per_s", "{} (rad/sec)", "g{}_rad_s"),
+        *("{}-axis (rad/s)", "imu rate {} [radians per second]", "UncompGyro{}", "{}_rate"),
     ],
 )
-def test_words_that_come_again_with_other_numbers_are_no_names(line, says):
-    assert _says_its_names("Gyro X,1,Y,2,Z,3", [line], ",") is says
+def test_usual_names_and_units_of_rates_are_known(tmp_path, name):
+    axes = {"UncompGyro{}": "012", "{}_rate": ("roll", "pitch", "yaw")}.get(name, "xyz")
+    frame = rates(["t_s", *map(name.format, axes)], 300)
+    is_named = "rad" in name
+    frame.iloc[:, 1:] = np.radians(frame.iloc[:, 1:]) if is_named else frame.iloc[:, 1:]
+    recording, _ = read(tmp_path, frame, units=None if is_named else {"gyro": "dps"})
+    assert recording.gyro_dps().mean() == pytest.approx(0.8, abs=0.02)
 
 
-def test_letters_that_mark_the_ends_of_rows_are_no_words_around_numbers():
-    assert not _says_its_names("S,ACCx,GYRx,E", ["S,0.1,0.2,E"], ",")
+@pytest.mark.parametrize("name", ["FreeAcc_{}_g", "lacc_{}_g", "LinAcc{} (g)"])
+def test_acceleration_less_gravity_is_none(tmp_path, name):
+    frame = table().rename(columns={f"a{a}_g": name.format(a.upper()) for a in "xyz"})
+    assert "ax" not in read(tmp_path, frame)[0].columns
+
+
+def test_columns_that_are_not_taken_are_offered(tmp_path):
+    frame = table(500).rename(columns={"temp_c": "temp_h"}).assign(temp_cpu=40.0, volt=3087.0)
+    _, report = read(tmp_path, frame)
+    words = "by its name, but temp_h, temp_cpu: the bias cannot be followed over temperature"
+    assert told(report, f"{words}; if one of them is the sensor's or near it: --map temp=temp_h")
+    assert told(report, "left aside: temp_h, temp_cpu, volt; take one along as --map NAME=COLUMN")
+    recording, report = read(tmp_path, frame, mapping="temp=temp_h vdd_mv=volt hot=temp_cpu")
+    assert {"temp", "vdd_mv"} <= {*recording.columns} and not told(report, "left aside")
+    _, report = read(tmp_path, table(500), mapping="temp=none")
+    assert told(report, "no temperature: the bias")
+
+
+def test_the_acceleration_of_the_same_recording_in_a_file_beside_is_said(tmp_path):
+    def beside(name, force):
+        (tmp_path / f"{name}.csv").write_text(f"t_s,x,y,z\n0,0,0,{force}\n1,0,0,{force}\n")
+        _, report = read(tmp_path, rates(HEAD.split(",")), "Gyroscope_2.csv")
+        return report
+
+    assert not told(beside("Accelerometer_2-linear", 0.01), "is beside it")  # it has no gravity
+    assert told(beside("Accelerometer", 1.0), "Accelerometer.csv is beside it: zerorate import")
+    assert told(beside("Accelerometer_2", 1.0), "Accelerometer_2.csv is beside it")
 
 
 def test_of_two_accelerations_that_of_the_mapped_rates_is_taken(tmp_path):
-    columns = {f"imu{n}_{k}": [x] * 9 for n in (1, 2) for k, x in zip("pqr", (n, 2.0, 3.0))}
-    columns |= {f"imu{n}_acc_{k}_g": [n / 100] * 9 for n in (1, 2) for k in "xy"}
-    columns |= {f"imu{n}_acc_z_g": [1.0] * 9 for n in (1, 2)}
-    source = table(tmp_path / "in.csv", t_s=np.arange(9) / 10, **columns)
+    columns = {"t_s": np.arange(9) / 10}
+    columns |= {f"imu{n}_{k}": [x] * 9 for n in (1, 2) for k, x in zip("pqr", (n, 2.0, 3.0))}
+    columns |= {f"imu{n}_acc_{k}_g": [(k == "z") + n / 100] * 9 for n in (1, 2) for k in "xyz"}
     for n in (1, 2):
-        mapping = [parsed_mapping(f"g{a}=imu{n}_{k}:dps") for a, k in zip("xyz", "pqr")]
-        recording, _ = read_foreign(source, mapping=mapping)
+        mapping = " ".join(f"g{a}=imu{n}_{k}:dps" for a, k in zip("xyz", "pqr"))
+        recording, _ = read(tmp_path, pd.DataFrame(columns), mapping=mapping)
         assert recording.columns["ax"][0] == pytest.approx(163.84 * n, abs=0.5)
 
 
-def test_a_line_of_other_names_before_its_values_is_no_row_of_the_others(tmp_path):
-    rows = [f"gx:{k}.5 gy:2 gz:-3 t:{10 * k}" for k in range(9)]
-    rows[4] = rows[4].replace("gy", "ax")
-    (tmp_path / "in.txt").write_text("\n".join(["ready: 1", *rows, ""]))
-    _, report = read_foreign(tmp_path / "in.txt", units={"gyro": "dps", "time": "ms"})
-    assert (report.rows_written, sum(report.dropped.values())) == (8, 1)
+def test_a_column_without_a_number_is_left_out_and_the_whole_acceleration_with_it(tmp_path):
+    frame = table(400).assign(ax_g=0.0, ay_g="none", az_g=1.0, temp_c="none")
+    recording, report = read(tmp_path, frame)
+    assert {*recording.columns} == {"t_us", "gx", "gy", "gz"}
+    left_out = [line for line in report.notes if "left out: no number is in it" in line]
+    assert [line.split("'")[1] for line in left_out] == ["ay_g", "temp_c", "ax_g", "az_g"]
 
 
-def test_a_recording_in_this_form_only_changes_its_format(tmp_path):
-    columns = {name: np.arange(5) for name in ("gx", "gy", "gz", "load")}
-    columns["t_us"] = 3000 + 100_000 * np.arange(5)
-    write_recording(recording_from_columns(columns, Scales("X", 10, 77)), tmp_path / "in.csv")
-    report = import_recording(tmp_path / "in.csv", tmp_path / "out.parquet")
-    recording = read_recording(tmp_path / "out.parquet")
-    assert recording.columns["load"].tolist() == [0, 1, 2, 3, 4]
-    assert recording.scales.gyro_lsb_per_dps == 77
-    assert report.notes == ["a recording in this form already"]
-    assert (report.rows_read, report.rows_written, report.odr_hz) == (5, 5, 10)
-    assert report.duration_s == pytest.approx(0.4)
-    for told_more in ({"options": Options(hz=5.0)}, {"units": {"gyro": "dps"}}):
-        report = read_foreign(tmp_path / "in.csv", **told_more)[1]
-        assert told(report, "its own scales and times are kept") and report.odr_hz == 10
+@pytest.mark.parametrize(("every", "lsb_dps"), [(2, 0.002), (4, 0.002), (1, 0.06), (1, 0.2)])
+def test_a_sensor_read_faster_than_it_measures_has_each_reading_once(tmp_path, every, lsb_dps):
+    readings = np.random.default_rng(5).normal(0.8, 0.05, (3000 // every, 3)) / lsb_dps
+    frame = pd.DataFrame(np.repeat(np.rint(readings) * lsb_dps, every, axis=0), columns=RATES)
+    frame = frame.assign(t_s=np.arange(3000) * 0.005, other=np.arange(3000))
+    recording, report = read(tmp_path, frame, mapping="other=other")
+    assert len(recording) == pytest.approx(3000 / every, rel=0.01)
+    assert recording.scales.odr_hz == pytest.approx(200 / every)
+    assert np.array_equal(recording.columns["other"], recording.columns["t_us"] // 5000)
+    assert any("faster than" in reason for reason in report.dropped) is (every > 1)

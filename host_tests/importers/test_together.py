@@ -160,16 +160,6 @@ def test_files_of_sensors_that_share_no_time_are_refused(tmp_path, sensors):
         import_recording(sensors, tmp_path / "o.csv")
 
 
-def test_acceleration_without_gravity_in_a_file_beside_is_refused(tmp_path):
-    table(tmp_path / "Gyroscope.csv", 1.0)
-    names = ["t_s", "X (m/s^2)", "Y (m/s^2)", "Z (m/s^2)"]
-    swings = np.outer(np.sin(np.arange(500)), [0.1, 0.2, 0.3])
-    frame = pd.DataFrame(np.column_stack([np.arange(500) / 100, swings]), columns=names)
-    frame.to_csv(tmp_path / "Linear Accelerometer.csv", index=False)
-    with pytest.raises(BadRecording, match="gravity alone is 1 g; leave it out by --map ax=none"):
-        import_together([tmp_path], tmp_path / "out")
-
-
 _PAGE = Path(__file__).parents[2] / "docs" / "import-figures.md"
 
 

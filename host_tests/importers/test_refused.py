@@ -1,0 +1,127 @@
+"""What cannot be imported is refused, each with the words that mend it."""
+
+import os
+import re
+import zipfile
+
+import numpy as np
+import pandas as pd
+import pytest
+from zerorate_tools.errors import BadRecording, ZerorateError
+from zerorate_tools.importers import Options, import_recording, parsed_mapping, read_foreign
+
+from .test_tables import HEAD, lines, rates, read, table
+
+COUNTS = table()[["t_s", *"gx_dps gy_dps gz_dps ax_g ay_g az_g".split()]]
+COUNTS = (16384 * COUNTS).round().set_axis("t_us gx gy gz ax ay az".split(), axis=1)
+RAW = dict.fromkeys(("gyro", "accel", "temp"), "lsb")
+NOISE = np.random.default_rng(4).normal(size=(50, 6)) * [0.01, 0.02, 0.01, 0.1, 0.1, 0.1]
+UNNAMED_DATES = "\n".join(f"2026-05-01   10:00:{i // 5:02d} 0.8  0.8   0.9" for i in range(50))
+WITH_A_RATE = "// Sample rate: 50.0Hz\nGyr_X;Gyr_Y;Gyr_Z\n" + "0.1;0.2;0.3\n" * 20
+LISTS = pd.DataFrame({"t_s": np.arange(300) / 100, "pulse": 70, "gyro": "[0.8, -0.5, 0.3]"})
+
+
+@pytest.mark.parametrize(
+    ("frame", "how", "said"),
+    [
+        ("", {}, "empty file"),
+        (HEAD, {}, "no data row"),
+        ("a,b\n1,2", {}, "no column for gx, gy, gz; map it: --map gx=COLUMN"),
+        ("gx_dps,gy_dps,gz_dps\n1,2,3", {}, "no time stamps; give --hz"),
+        (f"{HEAD}\n1,2,3,4", {}, "time stands still"),
+        (f"{HEAD},temp_c\n1,0,0,0,0", {}, "no sample is left; 1 rows: all readings"),
+        (f"{HEAD}\n1,1,1,1", {"mapping": "load=weight"}, "no column 'weight'; choose of t_s, gx_d"),
+        (f"{HEAD},load\n0,1,1,1,1\n1,1,1,1,3e9", {"mapping": "load=load"},
+         r"row 2: load is 3e\+09, no integer of 32 bits; scale it down"),
+        ("t_us,gx_dps,gy_dps,gz_dps\n1,1,1,1\n18446744073709551615,1,1,1", {},
+         "row 2: the time stamp is .*name the unit"),
+        ("gx,gy,gz\n7,1,0\n-9,1,3", {}, "units of columns 'gx', 'gy', 'gz' are.*--gyro-unit dps"),
+        ("gx,gy,gz\n7,1,0\n-9,1,3", {"units": {"gyro": "knots"}}, "column 'gx' cannot be 'knots'"),
+        ("gx,gy,gz\n7,1,0\n-9,1,3", {"units": {"gyro": "lsb"}, "options": Options(hz=100)},
+         "scale of raw counts.*give --gyro-lsb-per-dps 131 "),
+        (COUNTS.assign(temp=-3400), {}, "--gyro-unit lsb .*--accel-unit lsb .*--temp-unit lsb "),
+        (COUNTS.assign(temp=-3400), {"units": RAW},
+         "--gyro-lsb-per-dps 131 --accel-lsb-per-g 16384 --temp-lsb-per-degc 340 --temp-offset"),
+        ('{"t": "now"}\n{"t": "then"}', {}, "JSON, and no numbers in it; write an object for each"),
+        (b"PK\x03\x04" + bytes(500), {}, "the zip is cut off or damaged; copy it again"),
+        ("version https://git-lfs.github.com/spec/v1\noid sha256:1bf6", {},
+         "a pointer of Git LFS, not the file; .*git lfs pull"),
+        ("$GPGGA,205250.75,5242.3734,N,0,,*0F\n$GNGSA,A,1,,*1D\n" * 20, {}, "no column for gx"),
+        (UNNAMED_DATES, {}, "--map t_us=2:s --map gx=3 --map gy=4 "),
+        (lines(NOISE + [49.0, 0, 0, 0, 0, 0]), {}, "map it: --map gx=COLUMN:UNIT.* one of 1, 2, 3"),
+        (WITH_A_RATE, {}, "--gyro-unit dps .*, --hz 50 [(]as the file says[)]"),
+        (WITH_A_RATE, {"units": {"gyro": "dps"}}, "time stamps; give --hz 50 [(]as the file says"),
+        (LISTS, {}, "COLUMN one of t_s, pulse; gyro: no number alone"),
+        (rates(["n", *HEAD.split(",")[1:]]).assign(n=range(2000)), {}, "no time stamps; give --hz"),
+        (table(500).rename(columns={"t_s": "min.timestamp"}), {}, r"--time-unit s \(100 Hz\)"),
+        (table(500).rename(columns={"t_s": "time"}).assign(time="May 1st, at noon"), {},
+         "no time can be read from column 'time'; .*--hz N"),
+        (table(500), {"instance": 1}, "there is one gyroscope; leave --instance away"),
+        (table(500).assign(**{f"b_gyro_{a}_dps": 1.0 for a in "xyz"}), {"instance": 2},
+         "there are 2 gyroscopes; give --instance 0 to 1"),
+        (rates("t_s p q r".split()), {}, "if these are rates: --map gx=p:dps --map gy=q:dps"),
+        # a quaternion is none, and a phone's Sensor Logger writes radians
+        (rates("t_s x y z w".split()), {}, "--map gx=COLUMN:UNIT.* COLUMN one of t_s, x"),
+        (rates("seconds_elapsed x y z".split()), {}, "--map gx=x:rad/s --map gy=y:rad/s"),
+    ],
+)  # fmt: skip
+def test_a_table_that_cannot_be_imported_says_what_to_do(tmp_path, frame, how, said):
+    with pytest.raises(BadRecording, match=said) as caught:
+        read(tmp_path, frame, "in.csv", **how)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("words", "complaint"),
+    [
+        ("gx", "no mapping: write gx=COLUMN:UNIT"),
+        ("gx=w:furlongs", "unit 'furlongs' of gx is none of dps"),
+        ("load=w:dps", "an extra channel takes a factor: load=w:x100"),
+        ("t=time:s", "t is none of t_us, gx, .*, temp, and"),
+    ],
+)
+def test_a_mapping_that_is_none_says_how(words, complaint):
+    with pytest.raises(ValueError, match=complaint):
+        parsed_mapping(words)
+
+
+def test_what_is_no_file_is_said(tmp_path):
+    with pytest.raises(BadRecording, match="no such file"):
+        read_foreign(tmp_path / "none.csv")
+    (tmp_path / "a").write_text("x")
+    with pytest.raises(BadRecording, match="a directory"):
+        read_foreign(tmp_path / "a" / "b.csv")
+    os.mkfifo(tmp_path / "pipe.csv")
+    with pytest.raises(BadRecording, match="neither a file nor a folder"):
+        import_recording(tmp_path / "pipe.csv", tmp_path / "out.parquet")
+
+
+def test_any_damage_of_a_zip_is_said_in_one_line(tmp_path):
+    path = tmp_path / "in.zip"
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as packed:
+        packed.writestr("run.csv", f"{HEAD}\n" + "0.1,1,2,3\n" * 99)
+    whole = path.read_bytes()
+    for at in range(0, len(whole), 8):
+        damaged = bytearray(whole)
+        damaged[at] ^= 0xB5
+        path.write_bytes(damaged)
+        with pytest.raises(ZerorateError) as caught:
+            read_foreign(path)
+        assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("name", "names", "told"),
+    [
+        ("Raw.csv", "X_(m/s^2) Y_(m/s^2) Z_(m/s^2)", "no rates [(]the unit of .X_"),
+        ("turned.csv", "x y z", "no rates [(]they are as long as gravity"),
+        ("Magnetometer.csv", "x y z", "no rates [(]the file is called Magnetometer.csv"),
+    ],
+)
+def test_axes_of_another_sensor_are_offered_as_no_rates(tmp_path, name, names, told):
+    (tmp_path / "Gyroscope.csv").write_text("t_s,x,y,z\n")
+    frame = table()[["t_s", "ax_g", "ay_g", "az_g"]].set_axis(["t_s", *names.split()], axis=1)
+    with pytest.raises(BadRecording, match=told) as error:
+        read(tmp_path, frame, name)
+    assert not re.search("--map gx=[xX]", str(error.value))
+    assert "likely in Gyroscope.csv: zerorate import" in str(error.value)
