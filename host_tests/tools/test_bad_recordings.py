@@ -1,6 +1,7 @@
 """A bad recording is refused in one line that names the file, the row, and what to do."""
 
 import math
+import re
 
 import pyarrow as pa
 import pyarrow.parquet as pq
@@ -20,13 +21,20 @@ _SCALES = '{"sensor": "X", "odr_hz": %s, "gyro_lsb_per_dps": 1}'
     [
         ("", "empty file"),
         (f"{HEADER}\n", "no data row"),
-        ("t_us,gx,gy\n0,1,2\n", "column gz is missing.*zerorate import"),
         ("time,x,y,z\n0,1,2,3\n", "t_us, gx, gy, gz are.*zerorate import .*bad.csv --out"),
         (f"{HEADER}\n0,1,2,3\n1,nan,2,3\n", "row 2: gx has no value; drop the row"),
         (f"{HEADER}\n0,1,2,3\n1,,2,3\n", "row 2: gx has no value"),
         (f"{HEADER},vdd_mv\n0,1,2,3,4\n1,1,2,3,\n", "row 2: vdd_mv has no value; fill the gaps"),
         (f"{HEADER}\n0,1,2,3\n1,1,2\n", "row 2: 3 cells where the header names 4"),
         (f"{HEADER}\n0,1,2,3\n1,1,x,3\n2,1,2\n", "row 2: gy is 'x', no integer"),
+        *(
+            (f"{HEADER}\n0,1,2,3\n1,2,{cell},3\n2,x,2,3\n", f"row 2: gy is '{re.escape(cell)}', no")
+            for cell in ("1.0", "1e3", "0x10", "9" * 19, "1 2", "-")
+        ),
+        *(
+            (f"{HEADER}\n0,1,2,3\n0,{cell},2,x\n", "row 2: gz is 'x', no integer")
+            for cell in ("-1", "+1", " 7 ", "\t7", "-" + "9" * 18, "")
+        ),
         (f"\n\n{HEADER}\n0,1,2,3\n1,1,2\n2,1,x,3\n", "row 2: 3 cells where the header names 4"),
         (
             f"{HEADER}\n0,1,2,3\n1,1,2\n2,1,2,3\n3,1,x,3\n",
@@ -54,18 +62,17 @@ def test_a_row_far_behind_the_first_megabyte_is_named(csv_of, last, complaint):
         read_recording(csv_of(f"{HEADER}\n" + "1,1,2,3\n" * 200_000 + f"{last}\n"))
 
 
-@pytest.mark.parametrize("bits", [30, 31, 32])
-def test_a_clock_that_ran_over_is_told_from_time_that_goes_backwards(csv_of, bits):
-    last = (1 << bits) - 4_000_000
-    for later, do in ((5_999_999, f"clock of {bits} bits ran over: add {1 << bits} to it"),
-                      (6_000_000, "sort or cut the recording there")):  # fmt: skip
-        with pytest.raises(BadRecording, match=f"row 2: time goes backwards.*{do}"):
-            read_recording(csv_of(f"{HEADER}\n{last},1,2,3\n{later},1,2,3\n"))
-
-
-@pytest.mark.parametrize(("earlier", "later"), [(100, -(1 << 33)), (1 << 33, 5), (5000, 4000)])
-def test_time_that_goes_back_by_other_than_a_clock_s_range_is_to_be_sorted(csv_of, earlier, later):
-    with pytest.raises(BadRecording, match="sort or cut the recording there"):
+@pytest.mark.parametrize(
+    ("earlier", "later", "do"),
+    [
+        *(((1 << bits) - 4_000_000, 5_999_999, f"clock of {bits} bits ran over: add {1 << bits} to")
+          for bits in (30, 31, 32)),
+        *((first, last, "sort or cut the recording there") for first, last in (
+            ((1 << 30) - 4_000_000, 6_000_000), (100, -(1 << 33)), (1 << 33, 5), (5000, 4000))),
+    ],
+)  # fmt: skip
+def test_a_clock_that_ran_over_is_told_from_time_that_goes_backwards(csv_of, earlier, later, do):
+    with pytest.raises(BadRecording, match=f"row 2: time goes backwards.*{do}"):
         read_recording(csv_of(f"{HEADER}\n{earlier},1,2,3\n{later},1,2,3\n"))
 
 
@@ -97,7 +104,7 @@ def test_rates_that_are_floats_are_refused_by_the_first_that_is_no_number(
         ({"sensor": "X", "odr_hz": 0, "gyro_lsb_per_dps": 1}, "odr_hz is 0"),
         ({"sensor": "X", "odr_hz": "fast", "gyro_lsb_per_dps": 1}, "odr_hz is 'fast', no number"),
         (_SCALES % "NaN", "odr_hz is nan"),
-        (_SCALES % ("9" * 400), r"odr_hz is 9+\.\.\.; write a number from"),
+        (_SCALES % ("9" * 400), r"odr_hz is 9{40}\.\.\.; write a number from"),
         (_SCALES % ("9" * 5000), "a number of thousands of digits"),
         ("[" * 100_000, "nested too deep"),
     ],
@@ -118,22 +125,14 @@ def test_a_csv_without_scales_says_what_to_write(csv_of):
     assert read_recording(path).scales.temp_offset_degc == 36.53
 
 
-def test_a_truncated_gzip_is_refused(tmp_path):
-    write_recording(a_recording(5000), tmp_path / "run.csv.gz")
-    whole = (tmp_path / "run.csv.gz").read_bytes()
-    for length in (5, len(whole) // 2, len(whole) - 4):
-        (tmp_path / "run.csv.gz").write_bytes(whole[:length])
-        with pytest.raises(BadRecording, match="cut off or damaged"):
-            read_recording(tmp_path / "run.csv.gz")
-
-
-def test_a_truncated_parquet_is_refused(tmp_path):
-    write_recording(a_recording(5000), tmp_path / "run.parquet")
-    whole = (tmp_path / "run.parquet").read_bytes()
-    for length, complaint in ((0, "empty file"), (100, "cut off"), (len(whole) - 9, "cut off")):
-        (tmp_path / "run.parquet").write_bytes(whole[:length])
-        with pytest.raises(BadRecording, match=complaint):
-            read_recording(tmp_path / "run.parquet")
+@pytest.mark.parametrize("name", ["run.csv.gz", "run.parquet"])
+def test_a_truncated_file_is_refused(tmp_path, name):
+    write_recording(a_recording(5000), tmp_path / name)
+    whole = (tmp_path / name).read_bytes()
+    for length in (0, 100, len(whole) // 2, len(whole) - 9):
+        (tmp_path / name).write_bytes(whole[:length])
+        with pytest.raises(BadRecording, match="cut off" if length else "empty file"):
+            read_recording(tmp_path / name)
 
 
 def test_a_parquet_without_scales_is_refused(tmp_path):
@@ -193,9 +192,6 @@ def test_a_row_is_of_one_mebibyte_at_most(csv_of):
     with pytest.raises(BadRecording, match="a row is longer than 1 MiB"):
         read_recording(csv_of(f"{HEADER}\n1,2,3,4\n2,{'7' * (1 << 21)},3,4\n"))
     assert len(read_recording(csv_of(f"{HEADER}\n1,{'0' * (1 << 19)}2,3,4\n"))) == 1
-
-
-def test_a_cell_of_a_quarter_million_letters_is_named_by_its_row(csv_of):
     with pytest.raises(BadRecording, match="row 2: gx is 'a{40}', no integer"):
         read_recording(csv_of(f"{HEADER}\n1,2,3,4\n2,{'a' * 250_000},3,4\n"))
 

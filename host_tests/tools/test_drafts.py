@@ -28,13 +28,6 @@ def a_draft(folder, mark=MARKED, **files):
     return draft
 
 
-def test_a_draft_without_a_writer_goes(tmp_path):
-    a_draft(tmp_path, o="half")
-    with written_beside(tmp_path / "o") as temporary:
-        temporary.write_text("whole")
-    assert contents(tmp_path) == {"o": "whole"} and len(list(tmp_path.iterdir())) == 1
-
-
 @pytest.mark.parametrize(
     "name",
     [

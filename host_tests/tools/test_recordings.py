@@ -12,7 +12,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from zerorate_tools.bounds import at_most, each_at_most
-from zerorate_tools.errors import BadRecording, InFile
+from zerorate_tools.errors import BadRecording
 from zerorate_tools.recordings import (
     Scales,
     open_recording,
@@ -21,7 +21,6 @@ from zerorate_tools.recordings import (
     recording_writer,
     write_recording,
 )
-from zerorate_tools.recordings.atomic import written_beside
 from zerorate_tools.recordings.checks import GAP, check_names
 from zerorate_tools.recordings.csv_format import read_header
 from zerorate_tools.recordings.scales import example_for, scales_from_text
@@ -79,23 +78,17 @@ def test_parquet_row_groups_are_read_only_as_they_are_needed(tmp_path):
 
 
 @settings(max_examples=20, suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(st.lists(st.integers(GAP + 1, 2**31 - 1), min_size=1, max_size=50), st.sampled_from(FORMATS))
-def test_any_32_bit_extra_channel_survives(tmp_path, values, file_name):
-    recording = a_recording(len(values), load=np.array(values, np.int64))
-    write_recording(recording, tmp_path / file_name)
-    assert read_recording(tmp_path / file_name).columns["load"].tolist() == values
-
-
-@settings(max_examples=20, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(
-    st.lists(st.integers(-(2**62), 2**62), min_size=1, max_size=20, unique=True),
+    st.lists(st.tuples(st.integers(-(2**62), 2**62), st.integers(GAP + 1, 2**31 - 1)), min_size=1),
     st.sampled_from(FORMATS),
 )
-def test_any_time_of_62_bits_survives(tmp_path, times, file_name):
-    columns = {name: np.arange(len(times)) for name in ("gx", "gy", "gz", "temp", "zz")}
-    recording = recording_from_columns({"t_us": np.array(sorted(times)), **columns}, SCALES)
+def test_any_time_of_62_bits_and_channel_of_32_survive(tmp_path, rows, file_name):
+    times, load = np.array(sorted(rows), np.int64).T
+    columns = {name: np.arange(len(rows)) for name in ("gx", "gy", "gz", "temp", "zz")}
+    recording = recording_from_columns({"t_us": times, **columns, "load": load}, SCALES)
     write_recording(recording, tmp_path / file_name)
-    assert read_recording(tmp_path / file_name).columns["t_us"].tolist() == sorted(times)
+    read = read_recording(tmp_path / file_name).columns
+    assert (read["t_us"] == times).all() and (read["load"] == load).all()
 
 
 def test_a_number_that_does_not_fit_is_refused_where_a_recording_is_made():
@@ -126,19 +119,18 @@ def test_a_channel_name_of_two_lines_is_refused(tmp_path, file_name):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_frame_holds_raw_integers_and_the_scales():
-    frame = a_recording().to_frame()
+def test_physical_units_follow_the_scales():
+    columns = {"gx": [131, 0], "gy": [0, 0], "gz": [-262, 0], "ax": [0, 0], "ay": [0, 0]}
+    columns |= {"t_us": [300_000, 800_000], "az": [16384, 0], "temp": [-680, 0]}
+    recording = recording_from_columns(columns, SCALES)
+    assert recording.gyro_dps()[0].tolist() == [1.0, 0.0, -2.0]
+    assert recording.accel_g()[0].tolist() == [0.0, 0.0, 1.0]
+    assert recording.temp_degc()[0] == 34.53
+    assert recording.samples()[0].tolist() == [0, 0, 16384, -680, 131, 0, -262]
+    frame = recording.to_frame()
     assert list(frame.columns) == ["t_us", "gx", "gy", "gz", "ax", "ay", "az", "temp"]
     assert frame.attrs["zerorate"]["gyro_lsb_per_dps"] == 131.0
-
-
-def test_physical_units_follow_the_scales():
-    columns = {"gx": [131], "gy": [0], "gz": [-262], "ax": [0], "ay": [0], "az": [16384]}
-    recording = recording_from_columns({"t_us": [0], **columns, "temp": [-680]}, SCALES)
-    assert recording.gyro_dps().tolist() == [[1.0, 0.0, -2.0]]
-    assert recording.accel_g().tolist() == [[0.0, 0.0, 1.0]]
-    assert recording.temp_degc().tolist() == [34.53]
-    assert recording.samples().tolist() == [[0, 0, 16384, -680, 131, 0, -262]]
+    assert recording.to_frame(physical=True).index.tolist() == [0.0, recording.duration_s]
 
 
 def test_no_other_thread_calls_python_while_a_text_is_read():
@@ -150,13 +142,6 @@ def test_no_other_thread_calls_python_while_a_text_is_read():
 
     assert rows_of(b"1,2\n3\n" * 100_000, ["a", "b"], pa.int64(), 0, take).num_rows == 100_000
     assert set(threads) == {main_thread()}
-
-
-def test_time_begins_with_the_first_sample():
-    rates = {name: [0, 131] for name in ("gx", "gy", "gz")}
-    recording = recording_from_columns({"t_us": [300_000, 800_000], **rates}, SCALES)
-    assert recording.duration_s == 0.5
-    assert recording.to_frame(physical=True).index.tolist() == [0.0, 0.5]
 
 
 @pytest.mark.parametrize("file_name", FORMATS)
@@ -197,23 +182,7 @@ def test_memory_within_a_bound_is_given_and_beyond_it_refused():
         next(sizes)
 
 
-def test_a_file_written_beside_replaces_the_older_one_only_when_all_went_well(tmp_path):
-    (tmp_path / "report.html").write_text("old")
-    with pytest.raises(ValueError), written_beside(tmp_path / "report.html") as temporary:
-        temporary.write_text("half")
-        raise ValueError
-    assert (tmp_path / "report.html").read_text() == "old"
-    with written_beside(tmp_path / "report.html") as temporary:
-        temporary.write_text("new")
-    assert [p.name for p in tmp_path.iterdir()] == ["report.html"]
-    assert (tmp_path / "report.html").read_text() == "new"
-    with pytest.raises(InFile, match="cannot be written.*name a folder that exists"):
-        with written_beside(tmp_path / "nowhere" / "x"):
-            pass
-
-
 HEADER = "t_us,gx,gy,gz"
-_SCALES = '{"sensor": "X", "odr_hz": %s, "gyro_lsb_per_dps": 1}'
 
 
 @pytest.mark.parametrize(("names", "complaint"), [
@@ -237,12 +206,7 @@ def test_names_of_columns_are_those_of_a_recording(names, complaint):
         assert str(caught.value).endswith(imported) is ("missing" in complaint)
 
 
-def test_rows_at_one_time_are_in_order(csv_of):
-    path = csv_of(f"{HEADER}\n-5,1,2,3\n-5,1,2,3\n-5,1,2,3\n")
-    assert read_recording(path).columns["t_us"].tolist() == [-5, -5, -5]
-
-
-@pytest.mark.parametrize("bad", [0, 1, 99, 100, 199, 200, 249])
+@pytest.mark.parametrize("bad", [0, 99, 100, 249])
 def test_the_row_is_counted_over_batches(tmp_path, parquet_of, bad):
     t_us = np.arange(250)
     gaps = pa.array([None if row == bad else 7 for row in t_us], pa.int64())
@@ -273,21 +237,6 @@ def test_a_header_is_the_first_line_that_is_not_blank_up_to_64_kib(tmp_path, enc
         else:
             with pytest.raises(BadRecording, match="no line ends within the first 64 KiB"):
                 read_header(path)
-
-
-@pytest.mark.parametrize("cell", ["1", "-1", "+1", " 7 ", "\t7", "9" * 18, "-" + "9" * 18, ""])
-def test_a_cell_that_is_an_integer_is_not_named(csv_of, cell):
-    path = csv_of(f"{HEADER}\n0,1,2,3\n1,{cell},2,x\n")
-    with pytest.raises(BadRecording, match="row 2: gz is 'x', no integer"):
-        read_recording(path)
-
-
-@pytest.mark.parametrize("cell", ["1.0", "1e3", "--1", "0x10", "9" * 19, "one", "1 2", "+", "-"])
-def test_a_cell_that_is_none_is_named_before_a_later_one(csv_of, cell):
-    path = csv_of(f"{HEADER}\n0,1,2,3\n1,2,{cell},3\n2,x,2,3\n")
-    with pytest.raises(BadRecording) as caught:
-        read_recording(path)
-    assert f"row 2: gy is {cell!r}, no integer; give raw LSB" in str(caught.value)
 
 
 def test_scales_take_numbers_of_any_kind_and_keep_what_they_do_not_know():
@@ -329,10 +278,3 @@ def test_scales_are_of_a_megabyte_at_most(tmp_path, size):
     else:
         with pytest.raises(BadRecording, match="x.json: more than 1 MiB; write there"):
             read_recording(tmp_path / "x.csv")
-
-
-def test_a_long_value_of_the_scales_is_shown_by_its_beginning(csv_of):
-    for letters, shown in ((38, "a" * 38 + "'"), (39, "a" * 39 + "...")):
-        path = csv_of(f"{HEADER}\n0,1,2,3\n", _SCALES % f'"{"a" * letters}"')
-        with pytest.raises(BadRecording, match=f"odr_hz is '{shown}, no number; write a number"):
-            read_recording(path)
