@@ -75,7 +75,7 @@ def _evenly(luck):
     t_us = np.repeat(mostly(luck, 1e6, 2e4) * np.cumsum(ticks), counts)
     rows = {"t_us": t_us, "place": np.arange(len(t_us)) + 0.0}
     rows["gx"] = np.where(luck.random(len(t_us)) < mostly(luck, 0.0, 0.1), np.nan, 1.0)
-    out, said = clock.evenly(_cut(luck, rows), clock.Ticks(t_us), Path("log"), None)
+    out, said = clock.evenly(_cut(luck, rows), clock.Ticks(t_us), Path("log"))
     return [*_sizes(out), *map(float, re.findall(r"[\d.]*\d", said))]
 
 
@@ -92,7 +92,8 @@ def _bursts(luck):
     rates[:, luck.integers(size)] *= mostly(luck, 1.0, np.nan)
     columns = {"t_us": late, "place": np.arange(size) + 0.0, **dict(zip(("gx", "gy", "gz"), rates))}
     told = bursts.arrive_in_bursts(columns, every)
-    return [float(told), *_sizes(bursts.evened(_cut(luck, columns), every, None))]
+    spool = _cut(luck, columns)
+    return [float(told), *_sizes(spool.remade(bursts.evened(spool, every)))]
 
 
 def _lined(luck):
@@ -108,7 +109,7 @@ def _lined(luck):
     rates += luck.normal(0, 1, (3, size)) * mostly(luck, 0.0, 0.01, 0.04, 0.1)
     columns = {"t_us": t_us, "place": np.arange(size) + 0.0, **dict(zip(("gx", "gy", "gz"), rates))}
     columns["gx"][luck.random(size) < mostly(luck, 0.0, 0.1)] = np.nan
-    out, lost = lines.without_lines(_cut(luck, columns), Path("log"), None)
+    out, lost = lines.without_lines(_cut(luck, columns), Path("log"))
     return [*_sizes(out), lost]
 
 

@@ -59,7 +59,7 @@ def test_evened_stamps_never_go_back_and_follow_lost_samples(seed, longest, piec
     for first in range(0, SAMPLES, piece):
         spool.append({"t_us": at_us[first : first + piece]})
     spool.finish()
-    found = np.concatenate([columns["t_us"] for columns in evened(spool, 1e4, None)])
+    found = np.concatenate([columns["t_us"] for columns in evened(spool, 1e4)])
     assert (np.diff(found) >= 0).all()
     assert np.abs(found - taken_us).max() < 1.0
 

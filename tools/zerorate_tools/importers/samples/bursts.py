@@ -1,6 +1,6 @@
 """Time stamps of the arrival: samples that a bus or a host handed over several at a time."""
 
-from pathlib import Path
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -39,13 +39,12 @@ def _misfit(rates: np.ndarray, weight: np.ndarray, take: np.ndarray) -> float:
     return float(np.nansum((left**2 / (1 + weight**2 + (1 - weight) ** 2))[:, take]))
 
 
-def evened(spool: Spool, interval_us: float, folder: Path | None) -> Spool:
-    """The same samples, each at the time from which an even clock would have handed it over.
+def evened(spool: Spool, interval_us: float) -> Iterator[dict[str, np.ndarray]]:
+    """Yield the same pieces, each sample at the time when an even clock would have handed it over.
 
     A stamp is late, never early, and within a second a sample comes on time: those that do set
     the clock, and the others lie evenly between. Where samples are lost it stays later for good.
     """
-    out = Spool(spool.names, folder)
     around = max(1, round(GAP_LEAST_US / interval_us))
     behind = np.full(around, -np.inf)
     place = 0
@@ -58,12 +57,9 @@ def evened(spool: Spool, interval_us: float, folder: Path | None) -> Spool:
         clock = np.maximum(_least(padded, around, -1), _least(padded, around, 1))
         on_time = np.flatnonzero((padded <= clock) & np.isfinite(padded))
         lateness = late - np.interp(np.arange(around, around + rows), on_time, padded[on_time])
-        out.append({**columns, TIME: columns[TIME] - lateness})
+        yield {**columns, TIME: columns[TIME] - lateness}
         behind = padded[rows : rows + around]
         place += rows
-    out.finish()
-    spool.close()
-    return out
 
 
 def _next_late(spool, number, place, interval_us, around) -> np.ndarray:

@@ -1,5 +1,6 @@
 """Time stamps as microseconds: counters that ran over, the rate, the gaps, and coarse stamps."""
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -176,7 +177,19 @@ class _Spread:
         self.uneven = self.groups = 0
         self.fewest, self.most = np.inf, 0.0
 
-    def __call__(self, rows: dict[str, np.ndarray], following_us: float) -> dict[str, np.ndarray]:
+    def pieces(self, spool: Spool) -> Iterator[dict[str, np.ndarray]]:
+        """Yield the rows of a spool spread, those of one stamp together."""
+        rest = {name: np.empty(0) for name in spool.names}
+        for columns in spool:
+            rows = {name: np.concatenate([rest[name], columns[name]]) for name in spool.names}
+            t_us = rows[TIME]
+            ready = int(np.searchsorted(t_us, t_us[-1], "left"))
+            rest = {name: values[ready:] for name, values in rows.items()}
+            if ready:
+                yield self._spread({n: v[:ready] for n, v in rows.items()}, t_us[ready])
+        yield self._spread(rest, np.inf)
+
+    def _spread(self, rows: dict[str, np.ndarray], following_us: float) -> dict[str, np.ndarray]:
         """The same rows, each with a time of its own. following_us: the stamp after the last."""
         t_us = rows[TIME]
         starts = np.flatnonzero(np.diff(t_us, prepend=-np.inf) > 0)
@@ -226,30 +239,18 @@ class _Spread:
             raise BadRecording(path, problem, do=do)
 
     def note(self) -> str:
-        ticks = self.ticks
-        said = (
-            f"rows that share a time stamp of {duration(ticks.tick_us * 1e-6)} are spread over it"
-        )
+        stamp = duration(self.ticks.tick_us * 1e-6)
+        each = self.ticks.tick_us / self.ticks.sample_us
         lost = f"; in {self.uneven} of them rows are lost" if self.uneven else ""
-        return f"{said}, {ticks.tick_us / ticks.sample_us:.4g} each{lost}"
+        return f"rows that share a time stamp of {stamp} are spread over it, {each:.4g} each{lost}"
 
 
-def evenly(spool: Spool, ticks: Ticks, path: Path, folder: Path | None) -> tuple[Spool, str]:
+def evenly(spool: Spool, ticks: Ticks, path: Path) -> tuple[Spool, str]:
     """(The same rows in order of time, each at its share of the time of its stamp; what was done).
 
     Raises BadRecording where the rows of a stamp do not come evenly.
     """
-    out, spread = Spool(spool.names, folder), _Spread(ticks)
-    rest = {name: np.empty(0) for name in spool.names}
-    for columns in spool:
-        rows = {name: np.concatenate([rest[name], columns[name]]) for name in spool.names}
-        t_us = rows[TIME]
-        ready = int(np.searchsorted(t_us, t_us[-1], "left"))
-        rest = {name: values[ready:] for name, values in rows.items()}
-        if ready:
-            out.append(spread({name: v[:ready] for name, v in rows.items()}, t_us[ready]))
-    out.append(spread(rest, np.inf))
-    out.finish()
-    spool.close()
+    spread = _Spread(ticks)
+    out = spool.remade(spread.pieces(spool))
     spread.refuse_uneven(path)
     return out, spread.note()

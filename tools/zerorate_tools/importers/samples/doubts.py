@@ -172,6 +172,11 @@ def _of_rates(found: Gathered, plan: Plan, path: Path) -> list[str]:
         return []
     if not meant:
         return [said]
+    return _of_unit(said, meant, plan, path)
+
+
+def _of_unit(said: str, meant: str, plan: Plan, path: Path) -> list[str]:
+    """The doubt of a unit of rates that the user named; raise BadRecording for any other unit."""
     words = unit_words(plan.wanted, "gx", meant)
     if "gyro" in plan.typed:
         return [f"{said}: did you mean {meant}? ({words})"]
@@ -227,11 +232,7 @@ def _of_turning(times: Size, counted: bool, plan: Plan, scales: Scales, path: Pa
     meant = rate_unit_of(times, plan.factors["gx"][0])
     if meant is None:
         return [f"{said}: is their unit, or {time}, wrong?"]
-    words = unit_words(plan.wanted, "gx", meant)
-    if "gyro" in plan.typed:
-        return [f"{said}: did you mean {meant}? ({words})"]
-    do = f"did you mean {meant}? Give {words}; or name the unit as it is, which is believed"
-    raise BadRecording(path, said, do=do)
+    return _of_unit(said, meant, plan, path)
 
 
 def _unshaken(seen: dict[str, np.ndarray], plan: Plan) -> bool:

@@ -68,23 +68,10 @@ def _are_held(rates: np.ndarray, t_us: np.ndarray) -> bool:
     return bool(some.any() and some.mean() < _OFTEN_NEW and every.sum() > 0.5 * some.sum())
 
 
-def _refuse_too_fast(
-    too_fast: int, samples: int, fastest_dps: float, plan: Plan, path: Path
-) -> None:
-    """Raise BadRecording where more than a spike is faster than any range of these sensors."""
-    if too_fast <= _FAST_SHARE * (samples + too_fast):
-        return
-    meant = "dps" if plan.factors["gx"][0] > 1 else "mdps"
-    problem = f"{fastest_dps:.4g} dps is more than these sensors measure, in {too_fast} rows"
-    words = unit_words(plan.wanted, "gx", meant)
-    do = f"did you mean {meant}? Give {words}; if it is true, give --gyro-lsb-per-dps"
-    raise BadRecording(path, problem, do=do)
-
-
 class _Gathering:
     def __init__(self, table, plan, path, hz, fast_dps, folder):
         self.table, self.plan, self.path, self.hz = table, plan, path, hz
-        self.fast_dps, self.folder = fast_dps, folder
+        self.fast_dps = fast_dps
         self.readings = [name for name in plan.wanted if name != TIME]
         self.spool = Spool([TIME, PLACE, *self.readings], folder)
         self.dropped: Counter[str] = Counter()
@@ -109,7 +96,7 @@ class _Gathering:
             self._check()
             counted = self.counts.notes(self.path)
             self._refuse_turns(self.unfiltered)
-            self.spool = in_order(self.spool, self.path, self.folder)
+            self.spool = in_order(self.spool, self.path)
             self._leave_lines_out()
             if self.runs.steps_back:
                 self._refuse_turns([self._some(n, columns) for n, columns in enumerate(self.spool)])
@@ -133,7 +120,7 @@ class _Gathering:
         )  # fmt: skip
 
     def _leave_lines_out(self) -> None:
-        self.spool, lost = without_lines(self.spool, self.path, self.folder)
+        self.spool, lost = without_lines(self.spool, self.path)
         if lost:
             self.dropped["on a straight line between readings, so it is none"] += lost
             self.samples -= lost
@@ -254,7 +241,7 @@ class _Gathering:
 
     def _check(self):
         refuse_change_of_unit(self.unfiltered, self.plan, self.table, self.path)
-        _refuse_too_fast(self.too_fast, self.samples, self.fastest, self.plan, self.path)
+        self._refuse_too_fast()
         if not self.samples:
             dropped = self.table.dropped + self.dropped
             if not dropped and not self.rows:
@@ -270,19 +257,30 @@ class _Gathering:
             )
         self.runs.refuse_a_restart(self.path)
 
+    def _refuse_too_fast(self):
+        """Raise BadRecording where more than a spike is faster than any range of these sensors."""
+        if self.too_fast <= _FAST_SHARE * (self.samples + self.too_fast):
+            return
+        meant = "dps" if self.plan.factors["gx"][0] > 1 else "mdps"
+        many = f"in {self.too_fast} rows"
+        problem = f"{self.fastest:.4g} dps is more than these sensors measure, {many}"
+        words = unit_words(self.plan.wanted, "gx", meant)
+        do = f"did you mean {meant}? Give {words}; if it is true, give --gyro-lsb-per-dps"
+        raise BadRecording(self.path, problem, do=do)
+
     def _interval_us(self) -> tuple[float, list[str]]:
         if self.hz:
             return 1e6 / self.hz, []
         pace, notes = self._pace(), []
         ticks = Ticks(pace.first)
         if ticks.coarse:
-            self.spool, note = evenly(self.spool, ticks, self.path, self.folder)
+            self.spool, note = evenly(self.spool, ticks, self.path)
             pace, notes = self._pace(), [note]
         interval_us = pace.interval_us(self.path)
         every_row = self.samples == sum(piece.rows for piece in self.spool.pieces)
         if every_row and arrive_in_bursts(self.spool.read(0), pace.mean_us):
             interval_us = pace.mean_us
-            self.spool = evened(self.spool, interval_us, self.folder)
+            self.spool = self.spool.remade(evened(self.spool, interval_us))
             self.kept = [self._some(n, columns) for n, columns in enumerate(self.spool)]
             notes.append("time stamps come in bursts: samples are spread evenly between them")
         return interval_us, notes

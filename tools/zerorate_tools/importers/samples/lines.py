@@ -40,8 +40,8 @@ class _Seen:
         self.on += int(on.sum())
         self.off += int((moves & (off > _CLEARLY)).sum())
         self.near += int((moves & ~on & (off <= _CLEARLY)).sum())
-        begins, ends = (np.flatnonzero(d) for d in _edges(on))
-        self.longest = max(self.longest, int((ends - begins).max(initial=0)))
+        edges = np.flatnonzero(np.diff(on, prepend=False, append=False))
+        self.longest = max(self.longest, int(np.diff(edges)[::2].max(initial=0)))
 
     @property
     def are_lines(self) -> bool:
@@ -49,7 +49,7 @@ class _Seen:
         return two_kinds and (self.on > _BY_CHANCE * self.rows or self.longest >= _RUN)
 
 
-def without_lines(spool: Spool, path: Path, folder: Path | None) -> tuple[Spool, int]:
+def without_lines(spool: Spool, path: Path) -> tuple[Spool, int]:
     """The rows that lie on no line between those around them, and how many did; the spool itself
     where none did. Raises BadRecording where a line's ends are no readings either."""
     digits = _digits(spool)
@@ -66,15 +66,13 @@ def without_lines(spool: Spool, path: Path, folder: Path | None) -> tuple[Spool,
         raise BadRecording(path, problem, do="import the log as the sensor wrote it")
     if not seen.are_lines:
         return spool, 0
-    out, lost = Spool(spool.names, folder), 0
+    return spool.remade(_off_lines(spool, digits)), seen.lines
+
+
+def _off_lines(spool: Spool, digits: np.ndarray) -> Iterator[dict[str, np.ndarray]]:
     for columns, off, _ in _pieces(spool, digits):
-        whole = np.flatnonzero(np.isfinite(columns["gx"]))
-        drop = whole[off <= 1.0]
-        out.append({name: np.delete(values, drop) for name, values in columns.items()})
-        lost += len(drop)
-    out.finish()
-    spool.close()
-    return out, lost
+        drop = np.flatnonzero(np.isfinite(columns["gx"]))[off <= 1.0]
+        yield {name: np.delete(values, drop) for name, values in columns.items()}
 
 
 def _pieces(
@@ -116,8 +114,3 @@ def _digits(spool: Spool) -> np.ndarray:
     rates = _frame(spool.read(0))[1:] if spool.pieces else np.empty((3, 0))
     steps = [np.diff(np.unique(axis)) for axis in rates]
     return np.array([s[s > 1e-9 * s.max()].min() if s.any() else 1.0 for s in steps])
-
-
-def _edges(on: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    padded = np.concatenate([[False], on, [False]])
-    return ~padded[:-1] & padded[1:], padded[:-1] & ~padded[1:]

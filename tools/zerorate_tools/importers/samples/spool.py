@@ -1,7 +1,7 @@
 """Rows set aside in a temporary file, so that no recording is ever whole in memory, and by time."""
 
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -38,7 +38,7 @@ class Spool:
     """
 
     def __init__(self, names: list[str], folder: Path | None = None) -> None:
-        self.names = names
+        self.names, self._folder = names, folder
         self.pieces: list[Piece] = []
         self._schema = pa.schema([(name, pa.float64()) for name in names])
         self._file = tempfile.TemporaryFile(dir=folder)
@@ -76,6 +76,15 @@ class Spool:
 
     def __iter__(self) -> Iterator[dict[str, np.ndarray]]:
         return (self.read(number) for number in range(len(self.pieces)))
+
+    def remade(self, pieces: Iterable[dict[str, np.ndarray]]) -> "Spool":
+        """A spool of these pieces in the place of this one, which is closed."""
+        out = Spool(self.names, self._folder)
+        for columns in pieces:
+            out.append(columns)
+        out.finish()
+        self.close()
+        return out
 
     def span_us(self, name: str) -> tuple[float, float] | None:
         """When a column has its first and its last reading; None where it has none."""
@@ -144,14 +153,16 @@ class Runs:
         self._rows = 0
 
 
-def in_order(spool: Spool, path: Path, folder: Path | None) -> Spool:
+def in_order(spool: Spool, path: Path) -> Spool:
     """The same rows by time; the spool itself where they are. Raises BadRecording."""
     pieces = spool.pieces
-    if all(p.in_order for p in pieces) and all(
-        a.last_us <= b.first_us for a, b in zip(pieces, pieces[1:])
-    ):
-        return spool
-    out = Spool(spool.names, folder)
+    follow = all(a.last_us <= b.first_us for a, b in zip(pieces, pieces[1:]))
+    is_sorted = follow and all(piece.in_order for piece in pieces)
+    return spool if is_sorted else spool.remade(_by_time(spool, path))
+
+
+def _by_time(spool: Spool, path: Path) -> Iterator[dict[str, np.ndarray]]:
+    pieces = spool.pieces
     numbers = sorted(range(len(pieces)), key=lambda n: pieces[n].first_us)
     waiting = {name: np.empty(0) for name in spool.names}
     for at, number in enumerate(numbers):
@@ -164,8 +175,5 @@ def in_order(spool: Spool, path: Path, folder: Path | None) -> Spool:
         waiting = {name: values[order] for name, values in waiting.items()}
         until = pieces[numbers[at + 1]].first_us if at + 1 < len(numbers) else np.inf
         ready = int(np.searchsorted(waiting[TIME], until))
-        out.append({name: values[:ready] for name, values in waiting.items()})
+        yield {name: values[:ready] for name, values in waiting.items()}
         waiting = {name: values[ready:] for name, values in waiting.items()}
-    out.finish()
-    spool.close()
-    return out
