@@ -18,25 +18,10 @@ from .import_steps import PATH, attempt, mostly
 
 _GYROS = ("g{}", "gyro_{} [rad/s]", "imu1.raw_gyro_{}", "imu2 gyro {} calibrated", "rot {} (deg/s)",
           "angular_velocity.{}", "{}", "w[{}]")  # fmt: skip
-_FORCES = (
-    "a{}",
-    "acc_{}_mg",
-    "imu1.acc_{}",
-    "imu2 acc {}",
-    "lin_acc_{}",
-    "{} (m/s^2)",
-    "a{} (ug/s)",
-)
-_TIMES_NAMED = (
-    "t_s",
-    "time",
-    "uptime_ms",
-    "Zeit (s)",
-    "timestamp_sample",
-    "frame",
-    "TimeUS",
-    "utc",
-)
+_FORCES = ("a{}", "acc_{}_mg", "imu1.acc_{}", "imu2 acc {}", "lin_acc_{}", "{} (m/s^2)",
+           "a{} (ug/s)")  # fmt: skip
+_TIMES_NAMED = ("t_s", "time", "uptime_ms", "Zeit (s)", "timestamp_sample", "frame", "TimeUS",
+                "utc")  # fmt: skip
 _OTHERS = ("temp", "cpu_temp", "die (K)", "temp_h", "humidity", "rtcTime", "seconds_elapsed", "id")
 
 _MAPPINGS = (
@@ -91,9 +76,8 @@ def plans():
     for _ in range(400):
         table = _named(luck)
         names = luck.permutation([*table.names, "none"])
-        of = mostly(
-            luck, (), ("gx", "x2"), ("gy", "rad/s"), ("temp", "k"), ("t_us", "ms"), ("q", "x3")
-        )
+        said_of = ("gx", "x2"), ("gy", "rad/s"), ("temp", "k"), ("t_us", "ms"), ("q", "x3")
+        of = mostly(luck, (), *said_of)
         mapping = [Mapped(of[0], mostly(luck, "", "-") + str(names[0]), of[1])] if of else []
         how = table, mapping, mostly(luck, 0, 1, 2), luck.random() < 0.2
         try:
@@ -171,11 +155,8 @@ def logs():
         clock = mostly(luck, "s", "ms")
         if clock == "ms" and "t_us" in columns:
             columns["t_us"] = (columns["t_us"] * 1e3 + 2.0**32 - 2000) % 2.0**32
-        units = dict(
-            zip(
-                COLUMNS, (clock, *["lsb" if counts else "dps"] * 3, *["lsb" if counts else "g"] * 3)
-            )
-        )
+        rate, force = ("lsb", "lsb") if counts else ("dps", "g")
+        units = dict(zip(COLUMNS, (clock, *[rate] * 3, *[force] * 3)))
         mapping = [Mapped(n, n, units.get(n, "degc" if n == "temp" else None)) for n in columns]
         scales = {"gyro_lsb_per_dps": mostly(luck, 131.0, 2185.0, None), "accel_lsb_per_g": 8192.0}
         options = Options(hz=mostly(luck, None, 50.0), **(scales if counts else {}))

@@ -39,10 +39,8 @@ def _misfit(luck):
     taken = 1e4 * np.arange(1200)
     late = np.maximum.accumulate(taken + 3e4 * luck.random(1200) * (np.arange(1200) % 25 > 4))
     rates = np.sin(taken * 4e-6 + np.arange(3)[:, None]) + luck.normal(0, 0.01, (3, 1200))
-    weight, some = (
-        np.diff(late)[1:] / np.maximum(late[2:] - late[:-2], 1.0),
-        np.arange(1198) % 25 < 2,
-    )
+    weight = np.diff(late)[1:] / np.maximum(late[2:] - late[:-2], 1.0)
+    some = np.arange(1198) % 25 < 2
     return [bursts._misfit(rates, of, some) for of in (weight, 0 * weight + 0.5)]
 
 

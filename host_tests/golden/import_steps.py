@@ -132,10 +132,8 @@ def units():
 
 def _stamps(luck):
     """Microseconds of a clock that may run over, some of which are torn; and the usual step."""
-    rows, every = (
-        luck.choice([1, 2, 3, 40, 1000, 1100, 2100]),
-        luck.choice([1e4, 1e6, 1e6 / 3, 4e5]),
-    )
+    rows = luck.choice([1, 2, 3, 40, 1000, 1100, 2100])
+    every = luck.choice([1e4, 1e6, 1e6 / 3, 4e5])
     t_us = every * np.cumsum(luck.choice([0, 1, 1, 1, 2, 4], rows))
     holds = luck.choice([2.0**30, 2.0**31, 2.0**32, 86_400e6, 3e9, 2.0**30 * 1e3])
     return (t_us + holds - luck.random() * t_us[-1]) % holds, every
@@ -147,11 +145,8 @@ def _clock(luck):
     place, torn = 7 + np.arange(len(t_us)), t_us.copy()
     some = luck.integers(0, len(t_us), luck.choice([0, 1, 1, 2, 12]))
     torn[some] += luck.choice([1, -1]) * luck.choice([9e6, 1e7, 1.1e7, 1e9])
-    unwrapped, pace, gaps = (
-        clock.Unwrapped(luck.choice([0.0, 1.0, 1e3])),
-        clock.Pace(),
-        clock.Gaps(every),
-    )
+    unwrapped = clock.Unwrapped(luck.choice([0.0, 1.0, 1e3]))
+    pace, gaps = clock.Pace(), clock.Gaps(every)
     parts = np.split(np.arange(len(t_us)), [max(1, luck.integers(len(t_us)))])
     out = [unwrapped(t_us[at], place[at]) for at in parts if len(at)]
     for part in out:

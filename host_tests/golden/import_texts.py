@@ -26,14 +26,8 @@ _HEADS = (
     [["s", "dps", "dps", "dps", "-"], ["t", "gx", "gy", "gz", "c"]],
     [["t", "gx", "gx", "", "gx"]],
 )
-_ABOVE = (
-    "",
-    "# a note",
-    "Sample rate: 0.2 kHz",
-    "tscale,0.001\ngscale,0.5,,",
-    "r,1,2,3",
-    "#a,b,c,d",
-)
+_ABOVE = ("", "# a note", "Sample rate: 0.2 kHz", "tscale,0.001\ngscale,0.5,,", "r,1,2,3",
+          "#a,b,c,d")  # fmt: skip
 _BEFORE = ("", "12:00:{:06.3f} -> ", "I ({}) imu: ", "\x1b[0;32mI ({}) imu: ", "[tag] ")
 _TIMES = (
     *("{:.3f}", "12:00:{:06.3f}", "2026-05-01T23:59:{:06.3f}+01:00", "12:00:{:02.0f} AM"),
@@ -43,11 +37,8 @@ _TIMES = (
 
 def _rows(luck, delimiter, number):
     """The lines of a table's rows."""
-    time, before, word = (
-        mostly(luck, *_TIMES),
-        mostly(luck, *_BEFORE),
-        mostly(luck, "", "on", "a b"),
-    )
+    time, before = mostly(luck, *_TIMES), mostly(luck, *_BEFORE)
+    word = mostly(luck, "", "on", "a b")
     commas, labels = luck.random() < 0.1, luck.random() < 0.12
     end = mostly(luck, "", delimiter)
     for n in range(number):

@@ -5,6 +5,8 @@ from contextlib import ExitStack
 from os import PathLike
 from pathlib import Path
 
+import numpy as np
+
 from ..errors import BadRecording
 from ..recordings import open_recording, recording_writer
 from ..recordings.atomic import written_together
@@ -40,22 +42,20 @@ def cut(
 
 def _of_recording(opened, starts: list[int], draft: Path) -> list[Path]:
     parts = [draft / f"{opened.name}-{number}.parquet" for number in range(1, len(starts) + 1)]
-    ends = [start - 1 for start in starts[1:]]
-    done, counts = 0, [0] * len(parts)
+    done, counts = 0, np.zeros(len(parts), int)
     with ExitStack() as files:
         writers = [
             files.enter_context(recording_writer(p, opened.column_names, opened.scales))
             for p in parts
         ]
         for batch in opened.batches():
-            size = len(batch["t_us"])
-            bounds = [0, *(min(max(end - done, 0), size) for end in ends), size]
-            for number, (first, last) in enumerate(zip(bounds, bounds[1:])):
-                if last > first:
-                    writers[number].append({n: v[first:last] for n, v in batch.items()})
-                    counts[number] += last - first
-            done += size
-        _check_all(counts, starts, opened.path)
+            rows = done + 1 + np.arange(len(batch["t_us"]))
+            part = np.searchsorted(starts, rows, "right") - 1
+            for number in np.unique(part):
+                writers[number].append({n: v[part == number] for n, v in batch.items()})
+            counts += np.bincount(part, minlength=len(parts))
+            done += len(rows)
+        _check_all(counts.tolist(), starts, opened.path)
     return parts
 
 

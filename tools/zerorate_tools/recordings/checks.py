@@ -80,7 +80,8 @@ class BatchChecker:
         if name == TIME:
             self._check_range(name, wide, 2**63 - 1, "64")
             return wide.astype(np.int64, copy=False)
-        return self._narrow(name, wide)
+        self._check_range(name, wide, _LIMIT, "32")
+        return wide.astype(np.int32, copy=False)
 
     def _without_gaps(self, name: str, values: pa.Array) -> pa.Array:
         extra = _is_extra(name)
@@ -89,10 +90,6 @@ class BatchChecker:
         row = self._row(int(np.argmax(values.is_null().to_numpy(zero_copy_only=False))))
         do = f"fill the gaps or drop column {name}" if extra else "drop the row"
         raise BadRecording(self._path, f"{name} has no value", row=row, do=do)
-
-    def _narrow(self, name: str, wide: np.ndarray) -> np.ndarray:
-        self._check_range(name, wide, _LIMIT, "32")
-        return wide.astype(np.int32, copy=False)
 
     def _check_range(self, name: str, wide: np.ndarray, most: int, bits: str) -> None:
         outside = (wide > most) | (wide < -most - 1)
