@@ -15,6 +15,8 @@ from zerorate_tools.importers.columns.mapping import parsed_mapping
 from zerorate_tools.loop.read.gate import CannotClose
 from zerorate_tools.recordings.turning import axes_of, dps_of_one
 
+from .test_tables import read
+
 SIGNS = st.tuples(*[st.sampled_from([-1, 1])] * 3)
 UNITS_DPS = {"dps": 1.0, "mdps": 1e-3, "rad/s": 180 / np.pi, "mrad/s": 0.18 / np.pi}
 
@@ -47,6 +49,12 @@ def test_in_a_hand_gravity_tells_the_size_of_rates(seed, hz, dps):
     assert dps_of_one(rates / dps, force, t_s).dps == pytest.approx(dps, rel=0.15)
 
 
+def frame_of(t_s, rates, force, names="gx_dps,gy_dps,gz_dps", forces="ax_g,ay_g,az_g", time="t_s"):
+    """A table of these columns."""
+    names = [time, *names.split(","), *forces.split(",")]
+    return pd.DataFrame(dict(zip(names, [t_s, *rates, *force])))
+
+
 @pytest.mark.parametrize("length_m", [0.3, 2.0])
 def test_a_pendulum_whose_pushes_move_with_it_does_not_mislead(tmp_path, length_m):
     t_s = np.arange(3000) / 100
@@ -54,13 +62,10 @@ def test_a_pendulum_whose_pushes_move_with_it_does_not_mislead(tmp_path, length_
     rate = np.gradient(swing, t_s)
     rng = np.random.default_rng(1)
     along = np.cos(swing) + rate**2 * length_m / 9.8
-    noise = rng.normal(0, 0.005, (3, len(t_s)))
-    force = np.array([along, 0 * t_s + 0.05 * rate, 0 * t_s]) + noise
+    force = np.array([along, 0.05 * rate, 0 * t_s]) + rng.normal(0, 0.005, (3, len(t_s)))
     rates = np.array([0 * rate, 0 * rate, rate]) + rng.normal(0, 0.002, (3, len(t_s)))
-    columns = {"t_s": t_s, **dict(zip(("gx (rad/s)", "gy (rad/s)", "gz (rad/s)"), rates))}
-    path = tmp_path / "in.csv"
-    pd.DataFrame(columns | dict(zip(("ax_g", "ay_g", "az_g"), force))).to_csv(path, index=False)
-    assert not import_recording(path, tmp_path / "out.csv").doubts
+    frame = frame_of(t_s, rates, force, "gx (rad/s),gy (rad/s),gz (rad/s)")
+    assert not read(tmp_path, frame)[1].doubts
 
 
 @settings(max_examples=12)
@@ -85,9 +90,8 @@ def test_in_a_hand_gravity_tells_the_axes_of_rates(seed, order, signs):
 
 def test_axes_that_do_not_agree_are_told_with_the_words_that_mend_them(tmp_path):
     t_s, rates, force = in_a_hand()
-    names = ("gx_dps", "gy_dps", "gz_dps", "ax_g", "ay_g", "az_g")
     mixed = rates[[1, 0, 2]] * np.array([[-1], [1], [1]])
-    pd.DataFrame({"t_s": t_s} | dict(zip(names, [*mixed, *force]))).to_csv(tmp_path / "in.csv")
+    frame_of(t_s, mixed, force).to_csv(tmp_path / "in.csv")
     (doubt,) = import_recording(tmp_path / "in.csv", tmp_path / "out.csv").doubts
     assert "y -x z of the accelerometer" in doubt
     with pytest.raises(CannotClose, match="out: gravity turns as if"):
@@ -109,76 +113,62 @@ def test_gaps_and_cells_without_a_number_do_not_change_what_is_told():
     assert dps_of_one(*slow[1:], slow[0]) is None
 
 
-def written(tmp_path, dps=1.0, names="gyro_x,gyro_y,gyro_z", start_s=0.0):
+def plain(dps=1.0, names="gyro_x,gyro_y,gyro_z"):
+    """A table whose names tell no units, and its rates in dps."""
     t_s, rates, force = in_a_hand()
-    columns = {"t": t_s + start_s, **dict(zip(names.split(","), rates / dps))}
-    path = tmp_path / "in.csv"
-    pd.DataFrame(columns | dict(zip(("acc_x", "acc_y", "acc_z"), force))).to_csv(path, index=False)
-    return path, rates
+    return frame_of(t_s, rates / dps, force, names, "acc_x,acc_y,acc_z", "t"), rates
 
 
 @pytest.mark.parametrize("unit", ["dps", "mdps", "rad/s"])
 def test_rates_and_times_whose_unit_nobody_names_are_taken_as_they_must_be(tmp_path, unit):
-    path, rates = written(tmp_path, UNITS_DPS[unit])
-    report = import_recording(path, tmp_path / "out.csv")
+    frame, rates = plain(UNITS_DPS[unit])
+    recording, report = read(tmp_path, frame)
     assert f"gyro taken in {unit}: gravity turns with it" in report.notes
     assert "time taken in s: that is 50 Hz" in report.notes
-    read = pd.read_csv(tmp_path / "out.csv")
-    assert np.allclose(read["gx"] * np.ptp(rates[0]) / np.ptp(read["gx"]), rates[0], atol=0.1)
+    assert recording.gyro_dps().T == pytest.approx(rates, abs=0.1)
 
 
 @pytest.mark.parametrize(("unit", "per_s"), [("ms", 1e3), ("us", 1e6), ("ns", 1e9)])
 def test_times_that_may_be_of_two_units_are_taken_so_that_the_rates_turn_gravity(
     tmp_path, unit, per_s
 ):
-    path, _ = written(tmp_path)
-    frame = pd.read_csv(path)
-    frame.assign(t=(frame["t"] * per_s).astype(int)).to_csv(path, index=False)
-    report = import_recording(path, tmp_path / "out.csv")
+    frame, _ = plain()
+    frame["t"] = (frame["t"] * per_s).astype(int)
+    _, report = read(tmp_path, frame)
     assert f"time taken in {unit}: that is 50 Hz, and gravity turns with the rates" in report.notes
-    still = frame.assign(t=(frame["t"] * per_s).astype(int), acc_x=0, acc_y=0, acc_z=9.8)
-    still.to_csv(path, index=False)
     with pytest.raises(BadRecording, match=rf"--time-unit .*\(0.05 Hz\) or {unit} \(50 Hz\)"):
-        import_recording(path, tmp_path / "out.csv")
+        read(tmp_path, frame.assign(acc_x=0, acc_y=0, acc_z=9.8))
 
 
 def test_a_unit_in_a_name_that_gravity_contradicts_is_refused_with_the_true_one(tmp_path):
-    path, _ = written(tmp_path, UNITS_DPS["rad/s"], "gx_dps,gy_dps,gz_dps")
+    frame, _ = plain(UNITS_DPS["rad/s"], "gx_dps,gy_dps,gz_dps")
     with pytest.raises(BadRecording, match="gravity turns 5[5-9] times as fast.*gx=gx_dps:rad/s"):
-        import_recording(path, tmp_path / "out.csv")
-    given = [parsed_mapping(f"{axis}={axis}_dps:dps") for axis in ("gx", "gy", "gz")]
-    report = import_recording(path, tmp_path / "out.csv", mapping=given)
+        read(tmp_path, frame)
+    _, report = read(tmp_path, frame, mapping="gx=gx_dps:dps gy=gy_dps:dps gz=gz_dps:dps")
     assert "did you mean rad/s?" in " ".join(report.doubts)
 
 
 @pytest.mark.parametrize("times", [0.5, 1.6])
 def test_times_and_scales_that_gravity_denies_are_doubted(tmp_path, times):
-    path, _ = written(tmp_path, 1.0, "gx_dps,gy_dps,gz_dps")
-    report = import_recording(path, tmp_path / "out.csv", options=Options(hz=50.0 * times))
-    (doubt,) = report.doubts
+    frame, _ = plain(1.0, "gx_dps,gy_dps,gz_dps")
+    (doubt,) = read(tmp_path, frame, options=Options(hz=50.0 * times))[1].doubts
     assert f"{times:.1f}" in doubt and "--hz" in doubt
-    path, _ = written(tmp_path, times / 16.4)
     how = {"units": {"gyro": "lsb"}, "options": Options(gyro_lsb_per_dps=16.4)}
-    (doubt,) = import_recording(path, tmp_path / "out.csv", **how).doubts
+    (doubt,) = read(tmp_path, plain(times / 16.4)[0], **how)[1].doubts
     assert "--gyro-lsb-per-dps" in doubt
 
 
 def test_columns_that_do_not_turn_gravity_are_doubted_as_rates(tmp_path):
     t_s, _, force = in_a_hand(push_g=0.0)
-    columns = {"t_s": t_s} | dict(zip(("gx_dps", "gy_dps", "gz_dps"), 90 * force[[1, 2, 0]] ** 2))
-    path = tmp_path / "in.csv"
-    pd.DataFrame(columns | dict(zip(("ax_g", "ay_g", "az_g"), force))).to_csv(path, index=False)
-    (doubt,) = import_recording(path, tmp_path / "out.csv").doubts
+    (doubt,) = read(tmp_path, frame_of(t_s, 90 * force[[1, 2, 0]] ** 2, force))[1].doubts
     assert "gx_dps" in doubt
 
 
 @pytest.mark.parametrize(("unit", "dps"), [("deg/min", 1 / 60), ("0.1 deg/s", 0.1)])
 def test_a_quotient_that_is_no_known_unit_is_refused_and_taken_by_its_size(tmp_path, unit, dps):
-    names = [f"gyro {axis} [{unit}]" for axis in "xyz"]
-    path, rates = written(tmp_path, dps, ",".join(names))
+    frame, rates = plain(dps, ",".join(f"gyro {axis} [{unit}]" for axis in "xyz"))
     with pytest.raises(BadRecording, match=f"{unit}.*:xSIZE"):
-        import_recording(path, tmp_path / "out.csv")
-    mapping = [parsed_mapping(f"g{name[5]}={name}:x{dps}") for name in names]
-    import_recording(path, tmp_path / "out.csv", mapping=mapping)
-    read = pd.read_csv(tmp_path / "out.csv")
-    assert np.allclose(read["gx"] * np.ptp(rates[0]) / np.ptp(read["gx"]), rates[0], atol=0.1)
+        read(tmp_path, frame)
+    words = " ".join(f"g{axis}=gyro_{axis}:x{dps}" for axis in "xyz")
+    recording, _ = read(tmp_path, plain(dps)[0], mapping=words)
+    assert recording.gyro_dps().T == pytest.approx(rates, abs=0.1)

@@ -54,11 +54,17 @@ def test_what_is_no_draft_of_ours_stays(tmp_path, name):
     assert sorted(tmp_path.rglob("*")) == before
 
 
+def locked(folder):
+    """A descriptor that holds the folder's lock until it is closed."""
+    held = os.open(folder, os.O_RDONLY)
+    fcntl.flock(held, fcntl.LOCK_EX)
+    return held
+
+
 def test_what_another_program_writes_now_stays_whatever_its_number(tmp_path):
     """Of another container its process number means nothing here; a lock does."""
     draft = a_draft(tmp_path, o="being written")
-    held = os.open(draft, os.O_RDONLY)
-    fcntl.flock(held, fcntl.LOCK_EX)
+    held = locked(draft)
     clear_left_over(tmp_path)
     assert contents(draft) == {"o": "being written"}
     os.close(held)
@@ -98,8 +104,7 @@ def test_a_draft_that_is_cleaned_away_before_it_is_locked_is_made_again(tmp_path
 
 def test_an_end_drops_what_this_process_writes_and_no_other(tmp_path):
     other = a_draft(tmp_path, o="another's")
-    held = os.open(other, os.O_RDONLY)
-    fcntl.flock(held, fcntl.LOCK_EX)
+    held = locked(other)
     with written_beside(tmp_path / "o") as mine, written_together(tmp_path / "out") as draft:
         drop_all()
         assert not mine.exists() and not draft.exists() and other.exists()
@@ -130,16 +135,13 @@ class TestSwitch:
 
     def test_is_waited_for_while_its_writer_lives(self, tmp_path, monkeypatch):
         switch = a_draft(tmp_path, ".zerorate-switch", o="new")
-        held = os.open(switch, os.O_RDONLY)
-        fcntl.flock(held, fcntl.LOCK_EX)
-        threading.Timer(0.2, os.close, [held]).start()
+        threading.Timer(0.2, os.close, [locked(switch)]).start()
         settle(tmp_path)
         assert contents(tmp_path) == {"o": "new"}
 
     def test_that_never_ends_is_said(self, tmp_path, monkeypatch):
         monkeypatch.setattr(drafts, "_PATIENCE_S", 0.1)
-        held = os.open(a_draft(tmp_path, ".zerorate-switch"), os.O_RDONLY)
-        fcntl.flock(held, fcntl.LOCK_EX)
+        held = locked(a_draft(tmp_path, ".zerorate-switch"))
         with pytest.raises(InFile, match="being replaced, which cannot be finished: another"):
             settle(tmp_path)
         os.close(held)

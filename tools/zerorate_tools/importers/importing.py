@@ -17,6 +17,7 @@ from ..recordings import Recording, Scales, check_output, open_recording, record
 from ..recordings.atomic import check_apart, written_together
 from ..recordings.reading import recording_name, whole
 from ..recordings.recording import ACCEL, COLUMNS, TIME
+from .columns.guesses import FASTEST_DPS
 from .columns.mapping import Mapped
 from .columns.plan import Plan, left_aside, planned
 from .kinds import table_of, table_of_files
@@ -29,7 +30,7 @@ from .samples.conversion import (
     integer_batches,
     without_wide_counts,
 )
-from .samples.doubts import FASTEST_DPS, doubts
+from .samples.doubts import doubts
 from .samples.gather import Gathered, gathered
 from .tables.sensors import told_apart
 from .tables.table import Table
@@ -253,12 +254,12 @@ def _own_form(path: Path, how: _How) -> _Import | None:
     report = Report(notes=[note], odr_hz=opened.scales.odr_hz)
 
     def batches() -> Iterator[dict[str, np.ndarray]]:
-        first = last = None
+        ends_us: list[int] = []
         for batch in opened.batches():
-            first, last = batch["t_us"][0] if first is None else first, batch["t_us"][-1]
+            ends_us += batch["t_us"][[0, -1]].tolist()
             report.rows_read += len(batch["t_us"])
             yield batch
         report.rows_written = report.rows_read
-        report.duration_s = 0.0 if first is None else float(last - first) * 1e-6
+        report.duration_s = (ends_us[-1] - ends_us[0]) * 1e-6
 
     return _Import(opened.scales, opened.column_names, batches(), report)

@@ -12,12 +12,13 @@ from .mapping import Mapped
 from .names import spelled
 from .units import RATE_DPS, RAW, STANDARD_GRAVITY, TIME_S, factors_of, kind_of, unit_in_name
 
-_GRAVITY = {"m/s2": STANDARD_GRAVITY, "g": 1.0, "mg": 1000.0}
+GRAVITY = {"m/s2": STANDARD_GRAVITY, "g": 1.0, "mg": 1000.0}
 _GRAVITY_WITHIN = 0.15
 #: Seconds since 1970 of the years 2001 and 2100.
 _CALENDAR_S = (1e9, 4.1e9)
-_DEGC, _KELVIN = (-60.0, 130.0), (230.0, 400.0)
-_FASTEST_DPS = 2050.0
+DEGC, _KELVIN = (-60.0, 130.0), (230.0, 400.0)
+#: The widest range of these sensors, and a little.
+FASTEST_DPS = 2050.0
 #: So near to one is the squared length of a quaternion that was rounded.
 _OF_ONE = 3e-4
 #: Rates at which anyone records, Hz.
@@ -147,7 +148,7 @@ def likely_columns(
         t_s = (values[time] - values[time][0]) * TIME_S[likely_time(values[time])]
     accel, unit, gyro = _by_values(rest, list(first), t_s)
     usual = max((abs(float(np.median(values[name]))) for name in gyro), default=0.0)
-    if not gyro or unit in RATE_DPS and usual * RATE_DPS[unit] > _FASTEST_DPS:
+    if not gyro or unit in RATE_DPS and usual * RATE_DPS[unit] > FASTEST_DPS:
         return []
     behind = f":{unit}" if unit else ""
     return out + accel + [f"{axis}={name}{behind}" for axis, name in zip(GYRO, gyro)]
@@ -168,7 +169,7 @@ def _by_values(
     unit = next((unit for unit in ("m/s2", "g") if unit in units), None)
     if unit is None:
         every = np.array(list(values.values()))
-        counted = (every % 1 == 0).all() or np.abs(np.median(every, axis=1)).max() > _FASTEST_DPS
+        counted = (every % 1 == 0).all() or np.abs(np.median(every, axis=1)).max() > FASTEST_DPS
         return [], RAW if counted else "", names if len(names) == len(GYRO) else []
     at = units.index(unit)
     accel = [f"{axis}={name}:{unit}" for axis, name in zip(ACCEL, names[at : at + 3])]
@@ -248,7 +249,7 @@ def _by_calendar(values: np.ndarray) -> tuple[str | None, str]:
 
 def _by_range(values: np.ndarray) -> tuple[str | None, str]:
     least, most = np.quantile(values, [0.02, 0.98])
-    for unit, (low, high) in (("degc", _DEGC), ("k", _KELVIN)):
+    for unit, (low, high) in (("degc", DEGC), ("k", _KELVIN)):
         if low <= least and most <= high:
             return unit, f"it is around {np.median(values):.4g}"
     return None, ""
@@ -265,7 +266,7 @@ def _by_gravity(
 def gravity_unit(columns: list[np.ndarray]) -> str | None:
     """The unit in which three columns are as long as gravity."""
     usual = _usual_length(columns)
-    near = (u for u, g in _GRAVITY.items() if abs(usual / g - 1.0) < _GRAVITY_WITHIN)
+    near = (u for u, g in GRAVITY.items() if abs(usual / g - 1.0) < _GRAVITY_WITHIN)
     return next(near, None)
 
 
@@ -291,7 +292,7 @@ def _likely(target: str, wanted: Mapping[str, Mapped], first: Mapping[str, np.nd
     likely = {"m/s2": "rad/s", None: "lsb" if counted else "dps", "lsb": "lsb"}.get(unit, "dps")
     # one unit for the three, by the fastest
     every = np.abs([first[wanted[axis].column] for axis in GYRO if axis in wanted])
-    fast = np.nanmax(every, initial=0.0) > _FASTEST_DPS / RATE_DPS["rad/s"]
+    fast = np.nanmax(every, initial=0.0) > FASTEST_DPS / RATE_DPS["rad/s"]
     return "dps" if fast and likely == "rad/s" else likely
 
 

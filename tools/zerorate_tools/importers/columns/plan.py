@@ -95,14 +95,20 @@ def planned(
     plan.plus = {t: factors_of(t)[m.plus[1]][0] for t, m in wanted.items() if m.plus}
     raw, unknown = set(), {}
     first = table.first_rows(plan.columns)
-    t_s = _times_s(plan, table, units or {}, first, path)
+    ask = (plan, table, units or {}, first, path)
+    time_unit = _unit(TIME, *ask, None) if TIME in wanted else None
+    t_s = None
+    if time_unit is not None:
+        t_s = first[wanted[TIME].column] * TIME_S[time_unit]
+        if wanted[TIME].plus:
+            t_s = t_s + first[wanted[TIME].plus[0]] * plan.plus[TIME]
     scaled = _of_attitude(wanted, first)
     for target, mapped in wanted.items():
         factor = factor_in(mapped.unit) if mapped.unit else scaled.get(target)
         if target not in COLUMNS or factor:
             plan.factors[target] = (factor or 1.0, 0.0)
             continue
-        unit = _unit(target, plan, table, units or {}, first, path, t_s)
+        unit = time_unit if target == TIME else _unit(target, *ask, t_s)
         if unit is None and target == TIME and np.isnan(first[mapped.column]).all():
             do = "write seconds, or dates as 2026-05-01T12:00:00.250; or count the rows: --hz N"
             raise BadRecording(path, f"no time can be read from column {mapped.column!r}", do=do)
@@ -314,22 +320,6 @@ def _list(names: list[str], most: int = _LISTED) -> str:
     return ", ".join(names[:most]) + (f" and {more} more" if more > 0 else "")
 
 
-def _times_s(
-    plan: Plan, table: Table, units: Mapping[str, str], first: dict[str, np.ndarray], path: Path
-) -> np.ndarray | None:
-    """Times of the first rows, where their unit is told."""
-    if TIME not in plan.wanted:
-        return None
-    mapped = plan.wanted[TIME]
-    unit = _unit(TIME, plan, table, units, first, path)
-    if unit is None:
-        return None
-    t_s = first[mapped.column] * factors_of(TIME)[unit][0]
-    if mapped.plus:
-        t_s = t_s + first[mapped.plus[0]] * plan.plus[TIME]
-    return t_s
-
-
 def _as_another_time(column: str, table: Table) -> tuple[str, str] | None:
     """(unit, why) of a time beside which another one goes on, whose name says its unit."""
     for other in usual.in_units_of_time(table.names):
@@ -352,8 +342,9 @@ def _unit(
     units: Mapping[str, str],
     first: dict[str, np.ndarray],
     path: Path,
-    t_s: np.ndarray | None = None,
+    t_s: np.ndarray | None,
 ) -> str | None:
+    """t_s: times of the first rows, where they are known. Raises BadRecording."""
     mapped = plan.wanted[target]
     if mapped.column in table.calendar:
         return "s"

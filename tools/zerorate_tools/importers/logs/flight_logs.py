@@ -1,7 +1,7 @@
 """Logs of flight controllers: PX4's ULog, ArduPilot's DataFlash, Betaflight's blackbox."""
 
 import struct
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterator
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -9,19 +9,19 @@ from typing import Any
 import numpy as np
 
 from ...errors import BadRecording
+from ...recordings.recording import ACCEL, GYRO
 from ..tables.table import Chunk, Table, chunks_of, one_after_the_other
 
-_SI = [
-    "t_us=t_us:us",
-    *(f"g{axis}=g{axis}:rad/s" for axis in "xyz"),
-    *(f"a{axis}=a{axis}:m/s2" for axis in "xyz"),
-    "temp=temp:degc",
-]
+_SI = {
+    "t_us": "us",
+    **dict.fromkeys(GYRO, "rad/s"),
+    **dict.fromkeys(ACCEL, "m/s2"),
+    "temp": "degc",
+}
 # PX4 ULog: sensor_gyro with sensor_accel, or sensor_combined where that is logged far faster.
 _TOPICS = ["sensor_gyro", "sensor_accel", "sensor_combined"]
 #: sensor_gyro is passed over where sensor_combined has as many times its samples.
 _FAR_FASTER = 10
-_GYRO, _ACCEL = ("gx", "gy", "gz"), ("ax", "ay", "az")
 # ArduPilot DataFlash (.bin, .log): the IMU messages of one instance.
 _TYPES = ("IMU", "IMU2", "IMU3")
 _FIELDS = {
@@ -75,13 +75,13 @@ def _topic(log: Any, name: str, instance: int) -> dict[str, np.ndarray] | None:
 
 def _single_sensors(gyro: dict, accel: dict | None) -> list[dict[str, np.ndarray]]:
     rates = {"t_us": gyro.get("timestamp_sample", gyro["timestamp"])}
-    rates |= {name: gyro[axis] for name, axis in zip(_GYRO, "xyz")}
+    rates |= {name: gyro[axis] for name, axis in zip(GYRO, "xyz")}
     for readings in _temperature(gyro):
         rates["temp"] = readings["temp"]
     if accel is None:
         return [rates]
     force = {"t_us": accel.get("timestamp_sample", accel["timestamp"])}
-    return [rates, force | {name: accel[axis] for name, axis in zip(_ACCEL, "xyz")}]
+    return [rates, force | {name: accel[axis] for name, axis in zip(ACCEL, "xyz")}]
 
 
 def _temperature(gyro: dict) -> list[dict[str, np.ndarray]]:
@@ -93,8 +93,8 @@ def _temperature(gyro: dict) -> list[dict[str, np.ndarray]]:
 
 def _combined(data: dict[str, np.ndarray]) -> list[dict[str, np.ndarray]]:
     columns = {"t_us": data["timestamp"]}
-    columns |= {name: data[f"gyro_rad[{i}]"] for i, name in enumerate(_GYRO)}
-    return [columns | {name: data[f"accelerometer_m_s2[{i}]"] for i, name in enumerate(_ACCEL)}]
+    columns |= {name: data[f"gyro_rad[{i}]"] for i, name in enumerate(GYRO)}
+    return [columns | {name: data[f"accelerometer_m_s2[{i}]"] for i, name in enumerate(ACCEL)}]
 
 
 def dataflash(path: Path, instance: int = 0) -> Table:
@@ -189,7 +189,6 @@ def _dps_per_lsb(headers: dict[str, Any]) -> float:
         return 1.0
 
 
-def si_mapping(names: Iterable[str]) -> list[str]:
+def si_mapping(names: Collection[str]) -> list[str]:
     """Words as of --map for those columns of a recording that an autopilot has, in SI units."""
-    names = set(names)
-    return [words for words in _SI if words.partition("=")[0] in names]
+    return [f"{name}={name}:{unit}" for name, unit in _SI.items() if name in names]

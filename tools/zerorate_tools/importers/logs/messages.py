@@ -40,13 +40,11 @@ def table_of_messages(
         has = ", ".join(f"{topic} ({kind})" for topic, kind in list(topics.items())[:12])
         problem = "no topic of type sensor_msgs/Imu"
         raise BadRecording(path, problem, do=f"name a bag that has one; this has {has or 'none'}")
-    names = [_TIME]
-    columns = {}
-    for topic, kind in wanted.items():
-        columns[topic] = {
-            field: f"{topic}/{field}{_UNITS.get(field, '')}" for field in _FIELDS[kind]
-        }
-        names += columns[topic].values()
+    columns = {
+        topic: {field: f"{topic}/{field}{_UNITS.get(field, '')}" for field in _FIELDS[kind]}
+        for topic, kind in wanted.items()
+    }
+    names = [_TIME, *(name for of in columns.values() for name in of.values())]
 
     def rows() -> Iterator[dict[str, float]]:
         for topic, logged_ns, decoded in as_far_as_it_goes(messages(), table.notes):
@@ -58,10 +56,8 @@ def table_of_messages(
                 table.dropped["a message that cannot be decoded"] += 1
                 yield {}
                 continue
-            row = {_TIME: _time_us(message, logged_ns)}
-            for field, name in columns[topic].items():
-                row[name] = _number(message, field)
-            yield row
+            values = {name: _number(message, field) for field, name in columns[topic].items()}
+            yield {_TIME: _time_us(message, logged_ns), **values}
 
     table = Table(names, partial(chunks_of, rows), sensor="IMU of ROS")
     return table

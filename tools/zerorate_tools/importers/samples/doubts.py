@@ -12,13 +12,10 @@ from ...numbers import duration
 from ...recordings import Scales
 from ...recordings.recording import ACCEL, COLUMNS, GYRO, TEMP, TIME
 from ...recordings.turning import Size, axes_of, axes_words, dps_of_one, turns_otherwise
-from ..columns.guesses import likely_units_of_time, rate_unit_of, unit_words
+from ..columns.guesses import DEGC, GRAVITY, likely_units_of_time, rate_unit_of, unit_words
 from ..columns.plan import Plan
 from .gather import Gathered
 
-#: The widest range of these sensors, and a little.
-FASTEST_DPS = 2050.0
-_GRAVITY = {"m/s2": 9.80665, "mg": 1000.0}
 _GRAVITY_WITHIN = 0.2
 #: A sensor's scale may be off by so much, and a speed that was gained adds little over so long.
 _LEAST_G, _MOST_G, _GRAVITY_FROM_US = 0.8, 1.25, 2e6
@@ -29,7 +26,6 @@ _RANGES_LSB = (16384, 8192, 4096, 2048, 1024)
 _FASTEST_HZ = 40_000.0
 #: Nothing with mass warms or cools faster than that.
 _FASTEST_DEGC_S, _LEAST_DEGC = 1.0, 3.0
-_TRUE_DEGC = (-60.0, 130.0)
 #: White noise that no such sensor is below, and none above, dps per square root of Hz.
 _QUIETEST, _LOUDEST = 2e-4, 0.1
 #: Rows that are rarer may each be a single reading, with all noise up to there, Hz.
@@ -106,7 +102,7 @@ def _meant(usual_g: float, plan: Plan, lsb: float) -> str:
     if "accel" in plan.raw:
         near = [r for r in _RANGES_LSB if abs(usual_g * lsb / r - 1.0) < _GRAVITY_WITHIN]
         return f"give --accel-lsb-per-g {near[0]}; else " if near else ""
-    for unit, size in _GRAVITY.items():
+    for unit, size in GRAVITY.items():
         for ratio, meant in ((size, unit), (1 / size, "g")):
             if abs(usual_g / ratio - 1.0) < _GRAVITY_WITHIN:
                 return f"did you mean {meant}? Give {unit_words(plan.wanted, 'ax', meant)}; else "
@@ -249,7 +245,7 @@ def _of_temperature(seen: dict[str, np.ndarray], plan: Plan) -> list[str]:
     leave = "or leave it out: --map temp=none"
     if len(temp) and not temp.any():
         return [f"the temperature is 0 throughout, as if nobody measured it: map another, {leave}"]
-    if not len(temp) or _TRUE_DEGC[0] <= np.median(temp) <= _TRUE_DEGC[1]:
+    if not len(temp) or DEGC[0] <= np.median(temp) <= DEGC[1]:
         return []
     unit = unit_words(plan.wanted, TEMP, "k")
     return [f"the usual temperature is {np.median(temp):.4g} degC: name its unit ({unit}), {leave}"]
