@@ -66,26 +66,26 @@ AREAS = {
     "rest": (
         ["firmware/zerorate/rest/"],
         ["firmware/test_" + name for name in (
-            "guard.py", "estimators.py", "fit.py", "histogram.py", "bursts.py", "windows.py",
-            "offsets.py", "published.py", "stillness.py")]
-        + [KNOWN, GOLDEN],
+            "guard.py", "estimators.py", "fit.py", "histogram.py", "bursts.py",
+            "published.py", "stillness.py")]
+        + [KNOWN, GOLDEN, _FIGURES + "[kernels of rest]"],
     ),
     "motion": (
         ["firmware/zerorate/motion/"],
-        [SWUNG, KNOWN, _FIGURES + "[settings]"]
+        [SWUNG, KNOWN, _FIGURES + "[settings]", _FIGURES + "[kernels of motion]"]
         + ["firmware/test_" + name for name in (
-            "in_motion.py", "motion_frame.py", "motion_fit.py", "motion_verdicts.py")],
+            "in_motion.py", "motion_frame.py", "motion_fit.py")],
     ),
     "gravity": (
         ["firmware/zerorate/gravity/"],
         [SWUNG, KNOWN, "firmware/test_gravity.py", "firmware/test_documents.py",
-         _FIGURES + "[settings]"],
+         _FIGURES + "[settings]", _FIGURES + "[kernels of gravity]"],
     ),
     "effects": (
         ["firmware/zerorate/effects/", "firmware/zerorate/model.py"],
         ["firmware/test_effect" + name for name in (
-            "_refine.py", "_kernels.py", "s.py", "s_in_time.py")]
-        + ["tools/test_model_on_device.py", KNOWN, EFFECTS],
+            "_refine.py", "s.py", "s_in_time.py")]
+        + ["tools/test_model_on_device.py", KNOWN, EFFECTS, _FIGURES + "[kernels of effects]"],
     ),
     # what puts the firmware's parts together, and what they compute with
     "corrector": (

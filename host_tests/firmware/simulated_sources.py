@@ -10,7 +10,8 @@ from zerorate.effects import effects
 from zerorate.effects.model_file import LOADED, REASONS
 from zerorate.model import EffectModel
 from zerorate_tools.layout import STATE
-from zerorate_tools.model import build_model, encoded
+from zerorate_tools.model import Binding, Slot, build_model, encoded
+from zerorate_tools.model.term import Term
 from zerorate_tools.recordings import Scales
 
 SCALES = Scales("MPU-6050", 2.0, 131.0, 16384.0, 340.0, 36.53)
@@ -19,6 +20,22 @@ FRAME = ("ax", "ay", "az", "temp", "gx", "gy", "gz")
 A_TICK = 2
 HOURS = 2
 _SAMPLES = HOURS * 3600 * A_TICK
+TEMP = ("temp", 20.0, 45.0, 32.0)
+TABLE = (0, 0.1, 0.3, 0.2, 0, -1, 1, 0.5, 0)
+EVERY_SLOT = [
+    Slot(Term(*TEMP, lag_mode="rate", lag_s=20.0), (0.3, -0.2, 0.1)),
+    Slot(Term(*TEMP, lag_mode="lag", lag_s=300.0, power=3, decay_s=900.0), (1e-4, 2e-4, 0.0)),
+    Slot(Term(*TEMP, memory="backlash", width=2.0, knot=0.3), (0.3, -0.2, 0.1)),
+    Slot(Term(*TEMP, memory="peak", power=2), (0.01, -0.02, 0.005)),
+    Slot(Term("rate_x", -200.0, 200.0, second="temp", second_lo=0, second_hi=60), (1e-3, 0, 1e-4)),
+    Slot(Term("vib", 0.0, 0.2, table=TABLE), (1.0, -2.0, 3.0)),
+    Slot(Term("vdd_mv", 4900.0, 5100.0, 5000.0, delay_s=90.0, power=2), (1e-4, 2e-5, 0.0)),
+    Slot(Term("time", 0.0, 900.0), (1e-4, 2e-5, 0.0)),
+]
+PLAYS = [
+    Slot(Term(*TEMP, memory="play", width=3.0), (0.01, -0.02, 0.005)),
+    Slot(Term(*TEMP, power=2, memory="play", width=8.0), (0.001, -0.002, 0.0005)),
+]
 
 
 def columns(seed=1):
@@ -98,3 +115,16 @@ def on_firmware(model, raw, dt_us=500000, good=lambda n: 1):
         effects.sense(state, model.e, frame, dt_us, good(n))
         out[n] = state[STATE.EFFECT_Q8 : STATE.EFFECT_Q8 + 3]
     return out / 256 / SCALES.gyro_lsb_per_dps
+
+
+def every_slot_bin():
+    """The bytes of a model with a slot of each kind, and two play operators."""
+    model = build_model([*EVERY_SLOT, *PLAYS], SCALES, binding=Binding(0x68, 0, 0, 3))
+    return encoded(model)
+
+
+def every_slot():
+    """That model, loaded."""
+    model = EffectModel()
+    assert model.load(every_slot_bin(), Sensor(4.0)) == LOADED
+    return model

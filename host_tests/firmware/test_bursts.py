@@ -96,28 +96,6 @@ def test_odd_frames_within_a_burst_are_judged_as_by_themselves(seed):
     assert list(burst.state) == list(single.state)
 
 
-def test_most_frames_of_a_rest_are_taken_at_one_look(monkeypatch):
-    left = []
-    plain = block.step
-    monkeypatch.setattr(block, "step", lambda *args: left.append(1) or plain(*args))
-    rows = whole_trace("default")[:1280]
-    corrector = corrector_for("default")
-    burst = array("i", b"".join(row.tobytes() for row in rows))
-    block.block(corrector.state, burst, corrector.settings, array("i", [0] * 9), len(rows))
-    assert 0 < len(left) < 1280 / 2
-
-
-@pytest.mark.parametrize("reading", [32001, -32001])
-@pytest.mark.parametrize("axis", range(3))
-def test_one_axis_at_its_rail_is_not_plain_and_just_below_it_is(axis, reading):
-    corrector = Corrector()
-    frame = array("i", [10_000, 0, 0, 16384, 0, 11, 12, 13])
-    frame[5 + axis] = reading
-    assert not block.plain(corrector.state, frame, corrector.settings, 0)
-    frame[5 + axis] = 32000 if reading > 0 else -32000
-    assert block.plain(corrector.state, frame, corrector.settings, 0)
-
-
 def test_a_corrector_without_machine_code_gives_the_same(one_by_one):
     mode, state, words = one_by_one
     corrector, rows = corrector_for(mode), whole_trace(mode)

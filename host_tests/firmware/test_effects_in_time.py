@@ -9,7 +9,7 @@ from zerorate import Sensor
 from zerorate.effects import effects
 from zerorate.effects.model_file import LOADED
 from zerorate.model import EffectModel
-from zerorate_tools.layout import EFFECTS, STATE
+from zerorate_tools.layout import EFFECTS, SLOT, STATE, slot_at
 from zerorate_tools.model import Slot, build_model, encoded
 from zerorate_tools.model.term import Term, evaluate
 
@@ -220,3 +220,25 @@ def test_a_sample_as_long_as_a_tick_is_corrected_by_its_own_temperature():
     got = on_firmware(slow, raw, dt_us=15_000_000)[:, 0]
     # the second tick has the first reading, too, which spoke before any tick had ended
     assert np.abs(got - 0.01 * np.arange(20))[2:].max() < 1e-4
+
+
+@pytest.mark.parametrize(("bound", "eighths"), [(0, 0), (0.05, 0), (0.0625, 1), (0.55, 4), (1, 8)])
+def test_coefficients_refine_within_eighths_from_the_model_s_own(bound, eighths):
+    model = loaded([Slot(SUPPLY, (0.001, -0.002, 0.003))])
+    own, now = (slot_at(0) + at for at in (SLOT.SLOT_OWN, SLOT.SLOT_COEFFICIENT))
+    model.e[now] = 7
+    model.refine(bound)
+    assert (model.e[EFFECTS.BOUND_EIGHTHS], model.e[EFFECTS.REFINE_ON]) == (eighths, eighths > 0)
+    assert (model.attend is not None) == (eighths > 0)
+    assert model.e[now : now + 3] == model.e[own : own + 3]
+    for wrong in (-0.001, 1.001):
+        with pytest.raises(ValueError, match=r"bound is 0\.\.1"):
+            model.refine(wrong)
+
+
+def test_a_channel_is_named_or_numbered():
+    model = EffectModel()
+    model.channels = ("vdd_mv", "load")
+    told = [model.channel(name, 5 + i) for i, name in enumerate(("load", 0, "vdd", 2, -1))]
+    assert told == [True, True, False, False, False]
+    assert list(model.e[EFFECTS.CHANNELS : EFFECTS.CHANNELS + 3]) == [6, 5, 0]

@@ -29,12 +29,10 @@ from zerorate_tools.layout import (
     axis_at,
     slot_at,
 )
-from zerorate_tools.model import Binding, Slot, build_model, encoded
-from zerorate_tools.model.term import Term
 
 from . import swung, trace
 from .played import IMPORT_BYTES, STATE_BYTES
-from .simulated_sources import SCALES
+from .simulated_sources import EVERY_SLOT, every_slot_bin
 from .trace_on_host import GOLDEN, checksums, on_cpython, on_machine_code, where_it_parts
 
 modes = pytest.mark.parametrize("mode", sorted(trace.MODES))
@@ -101,27 +99,11 @@ def test_a_device_that_swings_is_known_in_motion_and_against_gravity():
 _HERE = Path(__file__).parent
 UPDATES = 4000
 EFFECTS_CRC = 1018273669
-TEMP = ("temp", 20.0, 45.0, 32.0)
-TABLE = (0, 0.1, 0.3, 0.2, 0, -1, 1, 0.5, 0)
-SLOTS = [
-    Slot(Term(*TEMP, lag_mode="rate", lag_s=20.0), (0.3, -0.2, 0.1)),
-    Slot(Term(*TEMP, lag_mode="lag", lag_s=300.0, power=3, decay_s=900.0), (1e-4, 2e-4, 0.0)),
-    Slot(Term(*TEMP, memory="backlash", width=2.0, knot=0.3), (0.3, -0.2, 0.1)),
-    Slot(Term(*TEMP, memory="peak", power=2), (0.01, -0.02, 0.005)),
-    Slot(Term("rate_x", -200.0, 200.0, second="temp", second_lo=0, second_hi=60), (1e-3, 0, 1e-4)),
-    Slot(Term("vib", 0.0, 0.2, table=TABLE), (1.0, -2.0, 3.0)),
-    Slot(Term("vdd_mv", 4900.0, 5100.0, 5000.0, delay_s=90.0, power=2), (1e-4, 2e-5, 0.0)),
-    Slot(Term("time", 0.0, 900.0), (1e-4, 2e-5, 0.0)),
-]
-PLAYS = [
-    Slot(Term(*TEMP, memory="play", width=3.0), (0.01, -0.02, 0.005)),
-    Slot(Term(*TEMP, power=2, memory="play", width=8.0), (0.001, -0.002, 0.0005)),
-]
 
 
 @pytest.fixture(scope="module")
 def model_bin():
-    return encoded(build_model([*SLOTS, *PLAYS], SCALES, binding=Binding(0x68, 0, 0, 3)))
+    return every_slot_bin()
 
 
 @pytest.fixture(scope="module")
@@ -137,8 +119,8 @@ def on_host(model_bin):
         model.channel("vdd_mv", 5000 + k % 97)
         effects.sense(state, model.e, frame, 3000000 if k % 211 == 0 else 250000, int(k % 13 > 0))
         out.append(state[STATE.EFFECT_Q8 : STATE.EFFECT_Q8 + 3])
-        did |= {i for i in range(len(SLOTS)) if model.e[slot_at(i) + SLOT.SLOT_VALUE]}
-    assert did == set(range(len(SLOTS)))
+        did |= {i for i in range(len(EVERY_SLOT)) if model.e[slot_at(i) + SLOT.SLOT_VALUE]}
+    assert did == set(range(len(EVERY_SLOT)))
     first, second = (EFFECTS.PLAYS + PLAY.size * i + PLAY.PLAY_STATE for i in range(2))
     assert model.e[first] != model.e[second] != 0
     return np.array(out), np.array(model.e)

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from zerorate import Corrector, Sensor
-from zerorate.rest import estimators, histogram
+from zerorate.rest import estimators
 from zerorate_tools.layout import AXIS, ESTIMATOR, SETTINGS, STATE
 
 FREE = -1048576
@@ -198,37 +198,3 @@ def test_the_poorest_gives_way_by_the_document_else_the_most_crowded_of_the_mids
         assert found == gives_way(s, c, a, long, candidate), seed
         chosen.add(found)
     assert chosen == {candidate, *long}
-
-
-def test_the_estimator_in_use_keeps_a_temperature_that_is_a_margin_beyond_its_degree(axis):
-    half, margin = STEP // 2, axis.c[SETTINGS.MARGIN_LSB]
-    axis.learn(0)
-    for temp, kept in ((half + margin, True), (half + margin + 1, False)):
-        for way in (1, -1):
-            assert bool(estimators.find(axis.s, axis.c, axis.a, way * temp)) is kept
-    axis.learn(40 * STEP)
-    for temp, kept in ((half - 1, True), (half, False), (-half, True), (-half - 1, False)):
-        assert bool(estimators.find(axis.s, axis.c, axis.a, temp)) is kept
-
-
-@pytest.mark.parametrize("document", [False, True])
-def test_a_mean_temperature_moves_by_the_share_of_what_was_learned(document):
-    draw, axis = random.Random(3), Axis(document=document)
-    e, after = axis.a + AXIS.ESTIMATORS, 0
-    for n in range(200):
-        temp, weight = draw.randrange(-150, 150), draw.choice([1, 8, 64, 250, 9000])
-        before = after if n else 16 * temp
-        axis.learn(temp, 10 * draw.randrange(-3, 4), weight)
-        held = histogram.population(axis.s, e + ESTIMATOR.EST_HISTOGRAM, axis.c[SETTINGS.BINS])
-        after = axis.s[e + ESTIMATOR.EST_MEAN_TEMP_Q4]
-        assert after == before + (16 * temp - before) * weight // max(held, weight)
-    assert axis.s[e + ESTIMATOR.EST_READINGS] > 200
-
-
-def test_an_estimator_made_free_begins_at_a_whole_degree_with_the_spread_of_any(axis):
-    spread = axis.s[axis.a + AXIS.ESTIMATORS + ESTIMATOR.EST_SPREAD_Q8] = 777
-    for temp, degree in ((STEP // 2 - 1, 0), (STEP // 2, 1), (-STEP // 2 - 1, -1)):
-        e = estimators.make_room(axis.s, axis.c, axis.a, temp)
-        assert list(axis.s[e : e + 2]) == [degree * STEP, 16 * temp]
-        assert axis.s[e + ESTIMATOR.EST_READINGS] == 0
-        assert axis.s[e + ESTIMATOR.EST_SPREAD_Q8] == spread

@@ -91,20 +91,6 @@ def test_the_truth_lies_within_two_sigma_at_least_ninety_times_of_a_hundred():
     assert np.mean(inside) >= 0.9
 
 
-@pytest.mark.parametrize("turns", [3, 4, 7])
-def test_where_nothing_pushes_one_sigma_is_the_finest_step(turns):
-    settings = gravity_settings()
-    state = gravity_state(settings)
-    unknown = state[SIGMA]
-    state[GRAVITY.SIGN_TURNS], state[OBSERVED] = 2, 1
-    gravity.judge(state, settings, 0)
-    assert state[SIGMA] == unknown
-    state[GRAVITY.SIGN_TURNS] = turns
-    state[GRAVITY.STEP_Q8] = settings[GRAVITY_SETTINGS.FINE_Q8]
-    gravity.judge(state, settings, 0)
-    assert state[SIGMA] == settings[GRAVITY_SETTINGS.FINE_Q8]
-
-
 @pytest.mark.parametrize("options", [{}, {"document": True}])
 def test_a_sub_unit_has_two_samples_at_least(options):
     assert gravity_settings(odr_hz=4.0, **options)
@@ -186,13 +172,3 @@ def test_bytecode_counts_what_cpython_counts_and_allocates_nothing(
     expected = Counter(hz=25.0).feed(short_motion)
     assert expected.learned
     assert source_on(micropython, "gravity", short_motion.samples) == expected.state.tobytes()
-
-
-def test_what_forgets_all_leaves_nothing_of_what_was_counted():
-    settings = gravity_settings()
-    fresh = gravity_state(settings)
-    dirty = fresh[:]
-    for at in range(len(dirty)):
-        dirty[at] = 12345
-    gravity.clear(dirty, settings)
-    assert dirty == fresh

@@ -76,13 +76,6 @@ def sound(made):
 
 
 @modes
-def test_all_bins_are_equal_and_empty_at_first(mode):
-    made = Histogram(mode)
-    assert len(set(made.widths)) == 1
-    assert made.counts == [0] * made.bins
-
-
-@modes
 @settings(max_examples=40, deadline=None)
 @given(readings=chunks)
 def test_edges_increase_strictly_always(mode, readings):
@@ -124,20 +117,6 @@ def test_halving_loses_no_more_than_rounding(mode, readings):
         if after:
             assert left / after == pytest.approx(total / before, abs=1 / after)
     sound(made)
-
-
-@pytest.mark.parametrize("bins", [4, 5, 6])
-def test_a_merge_of_two_full_bins_keeps_its_edge_and_its_mean(bins):
-    made = Histogram("document", bins=bins)
-    width = made.widths[0]
-    low = made.s[made.h] >> 14
-    for i in range(2):
-        made.s[made.h + i] += 0x3FFF
-        made.s[made.h + bins + 1 + i] = 0x3FFF * (low + i * width + 3)
-    histogram.merge(made.s, made.h, bins, 0)
-    assert made.s[made.h] >> 14 == low
-    mean = made.sums[0] / made.counts[0]
-    assert mean == pytest.approx(low + width / 2 + 3, abs=1)
 
 
 def test_what_would_overflow_a_count_is_halved_first():
@@ -190,10 +169,6 @@ def test_the_bias_is_the_mean_of_the_bin_with_most_readings_for_its_width():
     assert made.read_out == pytest.approx(475 / 30, abs=1 / 256)  # 30 / 20 LSB is most
 
 
-def test_an_empty_histogram_reads_zero():
-    assert Histogram("document").read_out == 0
-
-
 @pytest.mark.parametrize("lsb_per_dps", [131.0, 65.5, 32.8, 16.4])
 @pytest.mark.parametrize("mean_lsb", [0.0, 0.3, 0.5, -3.02])
 def test_what_was_learned_is_kept_in_every_range(lsb_per_dps, mean_lsb):
@@ -203,66 +178,3 @@ def test_what_was_learned_is_kept_in_every_range(lsb_per_dps, mean_lsb):
         made.add(round(rng.gauss(mean_lsb, 0.06 * lsb_per_dps)))
     assert sum(made.counts) > 1500
     assert made.read_out == pytest.approx(mean_lsb, abs=0.3)
-
-
-def drawn(mode, seed):
-    """A histogram whose bins have drawn widths, counts and means, equal ones among them."""
-    draw, made = random.Random(seed), Histogram(mode)
-    edge = draw.randrange(-900, -200)
-    for i in range(made.bins + 1):
-        count = draw.choice([0, 3, 3, 8, 40, draw.randrange(200)]) if i < made.bins else 0
-        made.s[made.h + i] = edge << 14 | count
-        width = draw.choice([1, 8, 8, 20, 64, 65, 300])
-        if i < made.bins:
-            made.s[made.h + made.bins + 1 + i] = count * edge + draw.randrange(count * width + 1)
-        edge += width
-    return made
-
-
-def significance(made, i, bins=1):
-    """Of a bin or a pair: its readings, over its width but by the document."""
-    count = sum(made.counts[i : i + bins])
-    if made.c[SETTINGS.LITERAL]:
-        return count
-    return (count << 12) // sum(made.widths[i : i + bins])
-
-
-@pytest.mark.parametrize("mode", ["every", "19 bins", "document", "4 bins"])
-def test_the_emptiest_pair_is_merged_where_a_bin_crowds_beside_it(mode):
-    crowds = []
-    for seed in range(300):
-        made = drawn(mode, seed)
-        full = histogram.fullest(made.s, made.h, made.bins)
-        assert full == made.counts.index(max(made.counts))
-        most = [count / width for count, width in zip(made.counts, made.widths)]
-        assert histogram.most_significant(made.s, made.h, made.bins) == most.index(max(most))
-        pairs = [p for p in range(made.bins - 1) if full not in (p, p + 1)]
-        pair = min(pairs, key=lambda p: significance(made, p, 2))
-        assert histogram.emptiest(made.s, made.c, made.h, full) == pair
-        enough = made.counts[full] >= made.c[SETTINGS.ENOUGH_TO_SPLIT]
-        ratio = made.c[SETTINGS.SPLIT_RATIO] * significance(made, pair, 2)
-        expected = enough and significance(made, full) > ratio
-        assert bool(histogram.crowded(made.s, made.c, made.h + full, made.h + pair)) is expected
-        crowds.append(expected)
-    assert 0 < sum(crowds) < 300
-
-
-def test_a_narrow_bin_slides_under_its_mean_unless_it_would_pass_a_neighbour():
-    slid = []
-    for seed in range(600):
-        made, k = drawn("every", seed), seed % 8
-        made.s[made.h + k] |= 64 * (seed % 3)
-        before, width, count = made.edges, made.widths[k], made.counts[k]
-        by = made.sums[k] // count - before[k] - (width >> 1) if count else 0
-        inner = 0 < k < made.bins - 1
-        narrow = width < 4 * made.c[SETTINGS.NARROWEST_LSB]
-        enough = narrow and count >= made.c[SETTINGS.ENOUGH_TO_SPLIT]
-        least = max(width, 32) >> 4
-        moves = inner and enough and not -least < by < least
-        if moves:
-            moves = before[k] + by > before[k - 1] and before[k + 1] + by < before[k + 2]
-        assert bool(histogram.recentre(made.s, made.c, made.h, k)) is bool(moves), seed
-        by = by if moves else 0
-        assert made.edges == [e + by * (i in (k, k + 1)) for i, e in enumerate(before)]
-        slid.append(moves)
-    assert 0 < sum(slid) < 300

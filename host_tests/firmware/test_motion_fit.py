@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 from zerorate.motion import attitude, least_squares, posterior, regression, thermal
-from zerorate.motion.motion_settings import motion_settings, motion_state
+from zerorate.motion.motion_settings import motion_state
 from zerorate_tools.layout import MOTION, MOTION_REASON, MOTION_SETTINGS
 
 from .motions import (
@@ -135,95 +135,6 @@ def test_a_row_moves_and_narrows_as_a_kalman_filter_with_students_tails(state, d
     assert covariance_at(state) == pytest.approx(left, abs=2e-5 * matrix.max())
 
 
-@pytest.mark.parametrize("square", [0.0, 1.0, 9.0])
-@pytest.mark.parametrize(("r", "gain"), [(0, 1 / 9), (2, 4 / 8)])
-def test_the_noise_follows_what_rows_say_beyond_what_was_expected(state, r, gain, square):
-    stored(state, MOTION.PUSH, 5e14)
-    stored(state, MOTION.T, square)
-    stored(state, MOTION.ROW_NOISE, 3.0)
-    stored(state, MOTION.EXPECTED, 1 / 12)  # a quarter is the row's own
-    least_squares.follow_noise(state, r)
-    share = 0.25 if r == 2 else 1
-    fit, push = value_at(state, MOTION.HEADING_FIT), value_at(state, MOTION.PUSH)
-    grown = 1 + gain * share * (square - 1)
-    assert (fit, push) == pytest.approx((grown, 5e14) if r == 2 else (1, 5e14 * grown), rel=1e-5)
-    assert state[MOTION.ROWS_SEEN] == 8 + (r != 2)
-
-
-def test_the_push_forgets_what_is_older_than_minutes(state):
-    for square in (9.0, 1.0):
-        for _ in range(600):
-            stored(state, MOTION.T, square * 1e14 / value_at(state, MOTION.PUSH))
-            least_squares.follow_noise(state, 0)
-        assert value_at(state, MOTION.PUSH) == pytest.approx(square * 1e14, rel=0.2)
-    assert state[MOTION.ROWS_SEEN] == 128
-
-
-@pytest.mark.parametrize(("stage", "accepted", "least_rad"), [(4, 0, 0.05), (7, 0, 0.3), (7, 1, 0)])
-def test_a_heading_strays_by_its_shapes_and_hardly_less_than_before(
-    state, draw, stage, accepted, least_rad
-):
-    n = 1 << stage
-    state[MOTION.STAGE], state[MOTION.LENGTH], state[MOTION.ACCEPTED] = stage, n, accepted
-    own = 1.33  # mean square of a shape
-    for strays in (0.02, 0.6):
-        held = (draw.uniform(0.1, 0.3) * (1 << 24)) ** 2 * n * own
-        stored(state, MOTION.HELD_STRAY, held)
-        shapes = strays * np.sqrt(n * own) * np.array([1, -1])
-        put_words(state, MOTION.STRAY, shapes * Q12)
-        least_squares.stray(state, SETTINGS)
-        found = np.sqrt(value_at(state, MOTION.HELD_STRAY) / n / own) / (1 << 24)
-        before = np.sqrt(0.8 * held / n / own) / (1 << 24) if accepted else least_rad
-        assert found == pytest.approx(max(before, np.hypot(strays, 0.01)), rel=0.01)
-
-
-def test_a_row_weighs_by_its_window_and_the_heading_by_what_it_strays(state):
-    stored(state, MOTION.PUSH, 2e14)
-    stored(state, MOTION.HELD_STRAY, 6e14)
-    stored(state, MOTION.HEADING_FIT, 0.5)
-    spread = SETTINGS[MOTION_SETTINGS.HEADING_SPREAD]
-    for stage, times in ((7, 2), (6, 1 / 2), (4, 1 / 8)):
-        state[MOTION.STAGE] = stage
-        for r in (0, 1, 3, 4):
-            least_squares.row_noise(state, SETTINGS, r)
-            assert value_at(state, MOTION.ROW_NOISE) == pytest.approx(times)
-        least_squares.row_noise(state, SETTINGS, 2)
-        expected = spread * (2 if stage == 7 else 1) * 6e14 * 0.5 / 2e14
-        assert value_at(state, MOTION.EXPECTED) == pytest.approx(expected, rel=1e-5)
-
-
-def test_a_swept_matrix_is_solved_as_numpy_solves_it(state, draw):
-    matrix, right = positive(draw), draw.normal(size=3)
-    for i in range(3):
-        for j in range(i, 3):
-            stored(state, least_squares.place(i, j), matrix[i, j])
-        stored(state, least_squares.place(i, 3), right[i])
-    stored(state, least_squares.place(3, 3), 0.0)
-    for k in range(3):
-        least_squares.sweep(state, k)
-    found = [value_at(state, least_squares.place(3, i)) for i in range(3)]
-    assert found == pytest.approx(np.linalg.solve(matrix, right), rel=1e-4, abs=1e-5)
-
-
-@pytest.mark.parametrize("stage", [4, 7])
-def test_the_documents_own_slope_is_that_of_a_line_in_time(draw, stage):
-    settings = motion_settings(document=True)
-    state, n = motion_state(settings), 1 << stage
-    state[MOTION.STAGE] = stage
-    biases, slopes = draw.normal(0, 1e5, 3), draw.uniform(-0.02, 0.02, 3) * 128 / n
-    put_all(state, MOTION.BIAS, biases)
-    put_rotation(state, MOTION.Q, Rotation.identity(), 1 << 28)
-    attitude.rotation(state)
-    for k in range(n):
-        put_words(state, MOTION.Y, slopes * (k - n / 2) * Q12)
-        regression.weights(state, k, stage, 1)
-        regression.rows(state)
-    for i in range(3):
-        least_squares.own_slope(state, i)
-        found = value_at(state, MOTION.SLOPE + 2 * i)
-        assert found == pytest.approx(biases[i] + slopes[i] * (1 << 24), rel=0.02, abs=2000)
-
-
 def slopes_at(state):
     """Slopes, their covariances with the biases, their variances: (3, 3)."""
     return packed_at(state, MOTION.TEMP_SLOPES, 9).reshape(3, 3).T
@@ -282,27 +193,6 @@ def test_the_slope_over_temperature_is_a_kalman_filters(state, draw, degrees):
         thermal.present(state, i)
         found.append(value_at(state, MOTION.T1))
     assert found == pytest.approx(at_present, rel=1e-3, abs=10)
-
-
-def test_nothing_is_carried_while_nothing_is_known(state):
-    before = state[MOTION.KNOWN : MOTION.MEAN + STATES]
-    state[MOTION.TEMP_Q8], state[MOTION.AGE_NODES] = 1 << 16, 64
-    thermal.carry(state, SETTINGS, 0)
-    assert state[MOTION.KNOWN : MOTION.MEAN + STATES] == before
-    assert (state[MOTION.THEN_TEMP_Q8], state[MOTION.AGE_NODES]) == (1 << 16, 0)
-
-
-def test_the_thermometer_is_followed_closely_and_as_a_windows_middle(state):
-    thermal.follow_temperature(state, -500)
-    near, behind = MOTION.NOW_TEMP_Q8, MOTION.TEMP_Q8
-    assert (state[near], state[behind]) == (-500 * 256, -500 * 256)
-    state[MOTION.FILLED] = 1
-    for nodes in (4, 64):
-        state[near] = state[behind] = 0
-        for _ in range(nodes):
-            thermal.follow_temperature(state, 1000)
-        assert state[near] / 256000 == pytest.approx(1 - 0.75**nodes, abs=1e-4)
-        assert state[behind] / 256000 == pytest.approx(1 - (63 / 64) ** nodes, abs=1e-3)
 
 
 def test_what_is_published_is_the_mean_under_a_prior_with_cauchys_tails(state, draw):

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 from zerorate import Corrector, Sensor
-from zerorate.motion import attitude, increments, tilt_frame
+from zerorate.motion import increments, tilt_frame
 from zerorate.motion.motion_settings import motion_settings, motion_state
 from zerorate.motion.orientation import level, orientation
 from zerorate_tools.layout import MOTION, MOTION_SETTINGS
 
 from . import motions
-from .motions import Q11, Q12, Q14, SETTINGS, put_rotation, put_words, rotation_at
+from .motions import Q11, Q12, Q14, SETTINGS, put_words, rotation_at
 from .played import by_machine_code
 
 
@@ -36,55 +36,6 @@ def test_the_least_turn_makes_the_mean_force_vertical(state, draw, way, size):
     # about a level axis: of what points down first half about x
     least = turn if force[2] >= 0 else turn * Rotation.from_rotvec([-np.pi, 0, 0])
     assert abs(least.as_rotvec()[2]) < (0.05 if size < 100 else 2e-3)
-
-
-def test_no_force_turns_nothing(state):
-    tilt_frame.find_up(state)
-    assert list(state[MOTION.START : MOTION.START + 4]) == [Q14, 0, 0, 0]
-
-
-@pytest.mark.parametrize("look", ["level", "observe"])
-def test_a_node_is_seen_as_two_tilts_and_its_force_upwards(state, draw, look):
-    turn, force = Rotation.from_rotvec(draw.normal(0, 0.5, 3)), draw.uniform(-3, 3, 3)
-    put_rotation(state, MOTION.Q, turn, 1 << 28)
-    state[MOTION.START] = Q14
-    at = MOTION.NODES_RING
-    put_words(state, at, draw.integers(-9, 9, 3) * 32768 + (np.rint(force * Q11) % 32768))
-    attitude.rotation(state)
-    for _ in range(2):
-        getattr(tilt_frame, look)(state, at)
-    x, y, z = turn.apply(force) * Q12
-    assert state[MOTION.UP] == pytest.approx(2 * z, abs=9)
-    if look == "level":  # sums
-        assert state[MOTION.OTHER_TILT] == pytest.approx(2 * x, abs=9)
-        assert state[MOTION.TILT] == pytest.approx(-2 * y, abs=9)
-    else:
-        assert list(state[MOTION.Y : MOTION.Y + 2]) == pytest.approx([-y, x], abs=5)
-
-
-@pytest.mark.parametrize("way", [1, -1])
-def test_the_heading_counts_whole_turns_up_to_eight_radians(state, way):
-    state[MOTION.START] = Q14
-    out = np.linspace(0, 20, 90)
-    for heading in way * np.concatenate([out, out[::-1], -out[:40]]):
-        # a quaternion and its negative are one attitude, but not one heading
-        w, z = np.cos(heading / 2), np.sin(heading / 2)
-        put_words(state, MOTION.Q, (1 << 28) * np.array([w, 0, 0, z]))
-        attitude.rotation(state)
-        tilt_frame.observe(state, MOTION.NODES_RING)
-        expected = np.clip(heading * Q12, -0x7FFF, 0x7FFF)
-        assert state[MOTION.Y + 2] == pytest.approx(expected, abs=3)
-
-
-def test_the_heading_is_the_twist_about_the_vertical_since_the_start(state, draw):
-    start, level = Rotation.from_rotvec(draw.normal(0, 1, 3)), [*draw.normal(0, 0.5, 2), 0]
-    twist = draw.uniform(-1.5, 1.5)
-    turn = Rotation.from_rotvec(level) * Rotation.from_rotvec([0, 0, twist]) * start
-    put_rotation(state, MOTION.START, start, Q14)
-    put_rotation(state, MOTION.Q, turn, 1 << 28)
-    x, y, z, w = (turn * start.inv()).as_quat()
-    off = attitude.heading_q12(state) - Q12 * 2 * np.arctan2(z, w)
-    assert abs((off + 3) % round(2 * np.pi * Q12)) < 7  # up to the sign of the quaternion
 
 
 def test_a_node_holds_the_turn_of_its_samples_and_their_mean_force(state, draw):
@@ -142,37 +93,6 @@ def test_what_second_order_rounds_off_does_not_add_up_to_a_bias():
     left = np.array(state[MOTION.NODE_ANGLE_Q24 : MOTION.NODE_ANGLE_Q24 + 3])
     turned_deg = np.degrees(turned / 8192 + left / (1 << 24))
     assert turned_deg == pytest.approx(rates.sum(axis=0) / 13100, abs=0.02)  # 2 mdps
-
-
-def test_the_part_of_a_sample_that_reaches_over_a_node_takes_its_bias_along(state):
-    put_words(state, MOTION.BIAS_Q24, [1 << 20, -(1 << 19), 0])
-    state[MOTION.NODE_N], node_us = 1, SETTINGS[MOTION_SETTINGS.NODE_US]
-    state[MOTION.NODE_ELAPSED_US] = node_us + node_us // 4
-    increments.close(state, SETTINGS)
-    # a quarter of the bias of a node, rounded to Q13, was held back
-    kept = [word >> 15 for word in state[MOTION.NODES_RING : MOTION.NODES_RING + 3]]
-    assert kept == [-(1 << 18) >> 11, 1 << 17 >> 11, 0]
-    left = state[MOTION.NODE_ANGLE_Q24 : MOTION.NODE_ANGLE_Q24 + 3]
-    assert list(left) == [1 << 18, -(1 << 17), 0]
-
-
-def test_the_ring_goes_round_and_a_fast_turn_is_remembered_until_it_has_left(state):
-    nodes = SETTINGS[MOTION_SETTINGS.NODES]
-    dps = round(200 * 131)  # a tenth of a second: .35 rad; two seconds: beyond
-    fast = array("i", [0, 0, 16384, 0, 0, dps, 0])
-    still = array("i", [0, 0, 16384, 0, 0, 0, 0])
-    increments.gather(state, SETTINGS, fast, 100000)
-    assert state[MOTION.FAST] == 0
-    increments.gather(state, SETTINGS, fast, 200000)
-    assert state[MOTION.FAST] == nodes
-    for number in range(1, nodes + 1):
-        increments.gather(state, SETTINGS, still, SETTINGS[MOTION_SETTINGS.NODE_US])
-        increments.close(state, SETTINGS)
-        assert state[MOTION.HEAD] == number % nodes
-        assert state[MOTION.FILLED] == number
-        assert state[MOTION.FAST] == nodes - number
-    increments.next_node(state, SETTINGS)
-    assert (state[MOTION.HEAD], state[MOTION.FILLED], state[MOTION.FAST]) == (1, nodes, 0)
 
 
 SWUNG_HZ = 50.0

@@ -7,8 +7,6 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 from zerorate import Corrector, Sensor
-from zerorate.motion import least_squares, posterior
-from zerorate.motion.motion_settings import motion_settings, motion_state
 from zerorate.motion.orientation import orientation
 from zerorate_tools.layout import GRAVITY, MOTION, SOURCE, STATE
 from zerorate_tools.model import Slot
@@ -17,7 +15,6 @@ from zerorate_tools.recordings import Scales
 from zerorate_tools.simulate import simulate
 
 from . import motions
-from .motions import covariance_at, put_packed, value_at
 from .played import by_machine_code, estimators
 from .simulated_sources import loaded
 from .test_motion_frame import as_rotation
@@ -207,60 +204,3 @@ def test_a_rough_guess_is_not_put_out(samples):
     played(corrector, samples[: round(40 * HZ)])
     assert corrector.motion[MOTION_LEARNED] > 0
     assert list(corrector.state[SOURCE_WORD : SOURCE_WORD + 3]) == [0, 0, 0]
-
-
-UNIT = 0.125 * (1 << 24) * np.pi / 180  # of a dps
-LSB_Q8 = 131 * 256
-
-
-def published(bias_dps, sigma_dps, **options):
-    """What is published of biases that windows alone leave with those sigmas, dps."""
-    c = motion_settings(**options)
-    s = array("i", motion_state(c))
-    push = value_at(s, MOTION.PUSH)
-    put_packed(s, MOTION.MEAN, np.array(bias_dps) * UNIT)
-    for axis, sigma in enumerate(sigma_dps):
-        put_packed(s, least_squares.known(axis, axis), [(sigma * UNIT) ** 2 / push])
-    posterior.know_prior(s)
-    for _ in range(6):
-        posterior.weigh_prior(s, c)
-        for pivot in range(3):
-            least_squares.sweep(s, pivot)
-        posterior.shrink(s, c)
-    posterior.publish(s, c)
-    words = np.array(s[MOTION.MOTION_BIAS_Q8 : MOTION.MOTION_QUALITY_Q8 + 3]) / LSB_Q8
-    return words[:3], words[3:]
-
-
-def test_a_bias_that_windows_hardly_tell_is_published_near_none():
-    bias, sigma = published([0.8, 0.8, -0.8], [1.0, 0.02, 1.0])
-    assert np.all(np.abs(bias[[0, 2]]) < 0.15)
-    assert bias[1] == pytest.approx(0.8, abs=0.002)
-    assert np.all(sigma < [0.6, 0.021, 0.6])
-
-
-def test_a_part_at_20_dps_is_found_all_the_same():
-    bias, sigma = published([20.0, -20.0, 5.0], [1.0, 0.1, 1.0])
-    assert bias == pytest.approx([20.0, -20.0, 5.0], rel=0.1)
-    assert sigma == pytest.approx([1.0, 0.1, 1.0], rel=0.05)
-
-
-def test_a_steady_turn_leaves_what_scale_may_be_wrong_by_however_many_windows_there_are():
-    c = motion_settings()
-    s = array("i", motion_state(c))
-    s[MOTION.STAGE], s[MOTION.LENGTH] = 7, 128
-    turn = 30 / 8 * np.pi / 180  # a node, of 30 dps
-    telling = 1 << 22  # far beyond the noise
-    s[MOTION.WINDOW_ROWS + 1] = telling
-    s[MOTION.WINDOW_ROWS + 4] = round(telling * turn)
-    for _ in range(100):
-        least_squares.innovate(s, c, 0)
-        for state in range(12):
-            least_squares.look(s, 0, state)
-        least_squares.weigh(s, 0)
-        least_squares.move(s)
-        for state in range(12):
-            least_squares.narrow(s, state)
-    known = covariance_at(s) * value_at(s, MOTION.PUSH)
-    assert np.sqrt(known[3, 3]) / (1 << 24) == pytest.approx(0.01, rel=0.02)
-    assert np.sqrt(known[0, 0]) / UNIT == pytest.approx(0.3, rel=0.05)

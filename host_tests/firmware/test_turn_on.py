@@ -226,20 +226,6 @@ def test_what_motion_alone_teaches_is_within_two_sigma():
 
 # --- integers that all of it is made of, beside exact ones ---
 
-_27_BITS = st.integers(-(2**27) + 1, 2**27 - 1)
-
-
-@given(st.integers(0, 2**20 - 1), st.integers(1, 2**20 - 1))
-def test_a_fraction_is_rounded_down_in_q27(a, b):
-    a, b = sorted((a, b))
-    assert fixed.fraction_q27(a, b) == (a << 27) // b
-
-
-@given(_27_BITS, st.integers(0, 2**27 - 1))
-def test_a_ratio_is_rounded_towards_zero_in_q26_and_held_at_four(a, b):
-    exact = 0 if b == 0 else min(0xFFFFFFF, (abs(a) << 26) // b)
-    assert abs(fixed.ratio_q26(a, b)) == exact and fixed.ratio_q26(a, b) * a >= 0
-
 
 @given(st.integers(-(2**30) + 1, 2**30 - 1), st.integers(1, 2**30 - 1), st.integers(-12, 12))
 @example(2**27 - 1, 3, 0)
@@ -251,23 +237,11 @@ def test_a_floating_ratio_is_right_to_two_units_of_its_26_bits(a, b, exponent):
     assert abs(fixed.floating_ratio_q26(a, b, exponent) - exact) <= 2 + abs(exact) * 2**-24
 
 
-@given(st.integers(-(2**27) + 1, 2**27 - 1))
-@example(0)
-def test_room_is_what_is_left_of_27_bits(value):
-    assert fixed.room(value) == 27 - abs(value).bit_length()
-
-
 @given(st.integers(0, 2**30 - 1))
 @example(2**16 - 1)
 @example(2**24 - 1)
 def test_a_root_is_the_largest_whose_square_is_no_more(square):
     assert fixed.root(square) == isqrt(square)
-
-
-@given(st.integers(-(2**28) + 1, 2**28 - 1), st.integers(-(2**28) + 1, 2**28 - 1))
-def test_a_scaled_product_is_right_to_a_unit(a, b):
-    for shift in range(26, 31):
-        assert abs(fixed.scaled(a, b, shift) - (a * b >> shift)) <= 1
 
 
 @pytest.mark.parametrize(("beyond", "share"), [(-1, 2), (0, 1)])

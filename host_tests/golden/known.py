@@ -22,6 +22,7 @@ from zerorate_tools.simulate import reference, simulate_sessions
 
 from . import arithmetic, exported, fleets, moved, reported, resting, served, shown, watched
 from .imported import IMPORTED
+from .kernels import KERNELS
 
 FILE = Path(__file__).with_name("known.json")
 
@@ -288,6 +289,7 @@ def moved_together():
 KNOWN = {
     "settings": settings,
     "arithmetic": arithmetic.arithmetic,
+    **KERNELS,
     "reported": reported.reported,
     "drawn": drawn,
     "simulated": simulated,
