@@ -1,97 +1,18 @@
 """Every intermediate result of every kernel fits 31 bits, whatever comes in."""
 
-import random
-
 import numpy as np
 import pytest
 from zerorate import Corrector, Sensor
 from zerorate import settings as rest
 from zerorate.ratio import Ratio
-from zerorate_tools.layout import SETTINGS, STATE
+from zerorate_tools.layout import STATE
 from zerorate_tools.replay.engines import others_of
 
 from . import trace
-from .checked import MOST, OutOf31Bits, Words, checked
+from .checked import MOST, OutOf31Bits, checked
 from .checked_c import CheckedLibrary
 from .sweep import attack
 from .trace_on_host import corrector_for, frames
-
-RAIL = 32767
-
-SENSORS = {
-    "MPU-6050": Sensor(),
-    "2000 dps": Sensor(1000.0, 16.4, 2048.0, 340.0, 36.53),
-    "one sample in 15 s": Sensor(1 / 15, 1000.0, 0.0, 100.0, 0.0),
-    "1 kHz": Sensor(1000.0, 131.0, 16384.0, 333.87, 21.0),
-    "8 kHz": Sensor(8000.0, 8000.0, 32768.0, 2000.0, 0.0),
-    "least of all": Sensor(0.01, 1.0, 1.0, 1.0, 0.0),
-    "finest of the slow": Sensor(1, 8000, 16384, 340, 36.53),
-    "gyroscope alone": Sensor(100.0, 131.0, 0.0, 0.0, 0.0),
-}
-MODES = {
-    "default": {},
-    "every": {"every": True},
-    "document": {"document": True},
-    "document, many": {"document": True, "bins": 19, "short": 6, "long": 12},
-    "few": {"bins": 4, "short": 1, "long": 1, "ignore_outside": True},
-}
-
-
-def around(centre, noise):
-    def make(n, pick):
-        return [centre + pick.randint(-noise, noise) if noise else centre for _ in range(3)]
-
-    return make
-
-
-def alternating(n, pick):
-    return [(RAIL if n & 1 else -RAIL) - pick.randint(0, 1)] * 3
-
-
-def anything(n, pick):
-    return [pick.randint(-32768, 32767) for _ in range(3)]
-
-
-def climbing(n, pick):
-    return [max(-RAIL, min(RAIL, (n * 37) % 65536 - 32768))] * 3
-
-
-def stepping(n, pick):
-    return [(RAIL - 60) * (1 if n // 700 & 1 else -1) + pick.randint(-9, 9) for _ in range(3)]
-
-
-SIGNALS = {
-    "+40 dps": around(5240, 12),
-    "-40 dps": around(-5240, 12),
-    "just below the rail": around(RAIL - 13, 12),
-    "just above the lower rail": around(-RAIL + 13, 12),
-    "frozen but for the temperature": around(-RAIL, 0),
-    "from rail to rail": alternating,
-    "anything": anything,
-    "climbing": climbing,
-    "stepping from end to end": stepping,
-}
-
-
-def temperatures(n, pick):
-    """Whole range of 16 bits in sweeps of steps just below a jump, some of them."""
-    step = 390 * (n // 97)
-    return max(
-        -32768, min(32767, (step % 131072 if step % 131072 < 65536 else -step % 65536) - 32768)
-    )
-
-
-def hostile(signal, updates, leap_us, seed=1):
-    """(frames, dt_us): hostile frames at hostile times."""
-    pick = random.Random(seed)
-    period_us = max(2, min(900000000, leap_us // 10))
-    rows, dt_us = [], []
-    for n in range(updates):
-        accel = [pick.randint(-9, 9), 0, RAIL if n % 501 == 500 else 16384]
-        rows.append([*accel, temperatures(n, pick), *signal(n, pick)])
-        hostile_us = [0, -1, 1 << 29, -(1 << 29), MOST >> 1]
-        dt_us.append(pick.choice(hostile_us) if n % 331 == 330 else period_us)
-    return rows, dt_us
 
 
 @pytest.fixture(scope="module")
@@ -103,27 +24,6 @@ def words(corrector):
     """The arrays of a corrector as the library takes them, the state first."""
     arrays = (corrector.state, corrector.settings, *others_of(corrector))
     return [None if part is None else np.array(part, np.int32) for part in arrays]
-
-
-def test_no_result_leaves_31_bits(library):
-    # windows as short as they come, so that few updates learn, evict and fit
-    for sensor in SENSORS:
-        signals = {}
-        for mode in MODES:
-            arrays = words(Corrector(SENSORS[sensor], window_s=0.0001, **MODES[mode]))
-            for name, signal in SIGNALS.items():
-                if name not in signals:
-                    signals[name] = hostile(signal, 150, int(arrays[1][SETTINGS.LEAP_US]))
-                assert library.run(arrays, *signals[name]) == "", (sensor, mode, name)
-            assert arrays[0][STATE.COUNTS] > 800
-
-
-@pytest.mark.parametrize("signal", ["just below the rail", "anything"])
-def test_no_result_leaves_31_bits_in_the_longest_windows(library, signal):
-    arrays = words(Corrector(SENSORS["8 kHz"]))
-    leap_us = int(arrays[1][SETTINGS.LEAP_US])
-    assert library.run(arrays, *hostile(SIGNALS[signal], 1400, leap_us)) == ""
-    assert arrays[1][SETTINGS.WINDOW] == 256
 
 
 @pytest.mark.parametrize("mode", sorted(trace.MODES))
@@ -138,31 +38,11 @@ def test_random_sensors_and_settings_of_the_documented_ranges_leave_31_bits_alon
     assert [left for left in found if left] == []
 
 
-def test_what_another_source_found_and_every_reading_are_learned_one_by_one(library):
-    # a frame that is none between them ended in a division by zero
-    assert attack(library, 806) == ""
-
-
-@pytest.mark.parametrize("number", [520, 625, 696, 1300])
-def test_little_gravity_few_lsb_of_rate_and_a_bias_worth_many_readings_fit(library, number):
+# 806: a frame that is none, between what another source found and every reading, ended in a
+# division by zero. The others: little gravity, few LSB of rate, a bias worth many readings.
+@pytest.mark.parametrize("number", [520, 625, 696, 806, 1300])
+def test_what_once_left_31_bits_fits(library, number):
     assert attack(library, number) == ""
-
-
-@pytest.mark.parametrize(
-    "beyond",
-    [
-        lambda a: a + 1,
-        lambda a: -2 - a,
-        lambda a: 3 * a >> 2,
-        lambda a: a << 1,
-        lambda a: 1 << a,
-        lambda a: 1 // (a - MOST),
-        lambda a: Words([0]).__setitem__(0, int(a) + 1),
-    ],
-)
-def test_the_checking_integer_finds(beyond):
-    with pytest.raises(OutOf31Bits):
-        beyond(checked(MOST))
 
 
 OPERATIONS = ["a + b", "a - b", "a * b", "a << b", "a >> b", "a // b", "a % b", "-a", "~a", "a ^ b"]

@@ -50,17 +50,6 @@ def feed(rested):
     return feed
 
 
-def test_what_was_learned_in_motion_is_kept_and_taken_back_to_the_last_word():
-    corrector = Corrector(Sensor(odr_hz=100.0), motion=True)
-    feed = CheckedCorrector(corrector)
-    kept = array("i", range(7, 7 + len(corrector.motion)))
-    corrector.motion[:] = kept
-    feed.keep()
-    corrector.motion[:] = array("i", [0] * len(kept))
-    feed.take_back()
-    assert corrector.motion == kept
-
-
 def test_what_came_after_the_last_read_back_is_forgotten_to_the_last_bit(feed):
     feed.rest(1, 100, checked.VERIFIED)
     feed.checked.keep()
@@ -171,14 +160,6 @@ def test_a_reading_is_told_from_what_is_none(feed, monkeypatch, status, verdict,
     assert feed.checked.update(feed.sample, 10000, status) is reading
     assert feed.checked.refused == (not reading)
     assert feed.checked.taken_back == (status == checked.RESTARTED)
-
-
-@pytest.mark.parametrize("status", [checked.RESTARTED, checked.SUSPECT])
-def test_a_sample_that_is_none_is_not_touched_and_counted(feed, status):
-    before = list(feed.sample)
-    assert not feed.checked.update(feed.sample, 10000, status)
-    assert list(feed.sample) == before
-    assert feed.checked.refused == 1
 
 
 def test_the_time_of_refused_samples_goes_to_the_next(feed):

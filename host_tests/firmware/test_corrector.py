@@ -12,7 +12,7 @@ from zerorate.storage.codes import EMPTY, LOADED, OTHER_BINDING, OUT_OF_RANGE, U
 from zerorate.storage.soundness import is_sound
 from zerorate.storage.store import _PIECE, Store
 from zerorate_fakes.memory import FakeMemory
-from zerorate_tools.layout import AXIS, ESTIMATOR, MOTION, STATE, axis_at
+from zerorate_tools.layout import AXIS, MOTION, STATE, axis_at
 
 from . import trace
 from .trace_on_host import corrector_for
@@ -48,13 +48,6 @@ def store_for(corrector, binding=b"\x68\0\0\0", memory=None):
 
 def test_by_default_an_estimator_never_speaks_without_its_neighbours(learned):
     assert [learned.source(i) for i in range(3)] == [bias.FIT] * 3
-
-
-def test_by_the_document_a_stable_estimator_of_this_temperature_speaks():
-    corrector = Corrector(document=True)
-    rest(corrector, 1200)
-    assert [corrector.source(i) for i in range(3)] == [bias.HERE] * 3
-    assert "from this temperature" in corrector.explain()
 
 
 def test_the_document_on_rests_learns_no_motion():
@@ -154,25 +147,6 @@ def test_no_state_that_was_ever_learned_is_taken_for_one_that_cannot_be(mode):
         corrector.update(frame, trace.fill(frame, n, generator))
         if n % 97 == 0:
             assert is_sound(corrector.state, corrector.settings), n
-
-
-@pytest.mark.parametrize(
-    ("at", "by"),
-    [
-        (ESTIMATOR.EST_TEMP, 1 << 16),
-        (ESTIMATOR.EST_READINGS, -100),
-        (ESTIMATOR.EST_BIAS_Q8, 1 << 20),
-        (ESTIMATOR.EST_HISTOGRAM, 2 << 28),  # an edge above the next: a bin without width
-        (ESTIMATOR.EST_HISTOGRAM + 1, 5),  # readings where no bin is
-        (ESTIMATOR.EST_HISTOGRAM + 2, 1 << 24),
-    ],
-)
-def test_an_estimator_that_contradicts_itself_starts_afresh(learned, at, by):
-    e = learned.state[axis_at(learned.settings, 0) + AXIS.CURRENT]
-    learned.state[e + at] += by
-    store = store_for(learned)
-    assert learned.save(store)
-    assert Corrector().load(store_for(Corrector(), memory=store.storage)) == OUT_OF_RANGE
 
 
 @pytest.mark.parametrize(

@@ -40,15 +40,6 @@ def test_play_operators_and_their_squares_are_those_of_the_reference(warm_up):
     assert (on_firmware(model, raw)[A_TICK - 1 :: A_TICK][1:] == got).all()
 
 
-def test_play_operators_alone_make_a_model(warm_up):
-    raw = {name: values[:400] for name, values in warm_up[0].items()}
-    model = loaded(PLAYS[:1])
-    assert (model.e[EFFECTS.SLOT_COUNT], np.abs(on_firmware(model, raw)[-1]).max() > 0.01) == (
-        0,
-        True,
-    )
-
-
 def test_two_delays_keep_what_was_apart():
     raw = {n: np.zeros(3000, int) for n in ("ax", "ay", "az", "gx", "gy", "gz")}
     raw["temp"] = np.arange(3000)
@@ -59,15 +50,6 @@ def test_two_delays_keep_what_was_apart():
     together = on_firmware(loaded(slots), raw)
     for axis, slot in enumerate(slots):
         assert (together[:, axis] == on_firmware(loaded([slot]), raw)[:, axis]).all()
-
-
-def test_only_the_effects_own_words_of_the_state_change(warm_up):
-    model = loaded([Slot(Term("temp", 10.0, 50.0), (0.01, 0.02, 0.03))])
-    state = array("i", [1234] * 100)
-    for _ in range(3):
-        effects.sense(state, model.e, array("i", [1, 2, 16384, 900, 3, 4, 5]), 10000, 1)
-    changed = [i for i, word in enumerate(state) if word != 1234]
-    assert changed == [STATE.EFFECT_Q8 + axis for axis in range(3)]
 
 
 def test_a_scale_error_is_of_the_very_sample(warm_up):

@@ -16,7 +16,6 @@ from zerorate_tools.layout import MOTION, MOTION_REASON
 from zerorate_tools.simulate import simulate
 
 from . import motions
-from .checked import Words
 from .motions import stored, value_at
 
 BIAS, SIGMA = MOTION.MOTION_BIAS_Q8, MOTION.MOTION_QUALITY_Q8
@@ -245,23 +244,6 @@ def test_numbers_in_two_words_keep_25_bits(kernel, exact, a, b):
     kernel(state, 4, 0, 2)
     largest = max(abs(a), abs(b)) if kernel in (real.add, real.subtract) else abs(exact(a, b))
     assert abs(value_at(state, 4) - exact(a, b)) <= largest / (1 << 25)
-
-
-def wild(seed, count=1500):
-    """Samples at the rails and beyond reason."""
-    motion = motions.swinging(seed, count / 50)
-    random = np.random.default_rng(seed)
-    motion.samples = random.choice([-32768, 32767, 0, 12345], (count, 7))
-    return motion
-
-
-@pytest.mark.parametrize("document", [False, True])
-@pytest.mark.parametrize("make", [motions.swinging, wild], ids=["a swing", "rails"])
-def test_every_intermediate_fits_31_bits(make, document):
-    learner = Learner(document=document, longest_stage=5)
-    learner.state, learner.settings = Words(learner.state), Words(learner.settings)
-    learner.feed(make(4, 30), keep=Words)
-    assert learner.state[MOTION.PASS] >= 0
 
 
 @pytest.fixture(scope="module")

@@ -51,24 +51,6 @@ class TestFile:
                 assert b"".join(found) == there[offset : offset + length]
                 assert {len(piece) for piece in found[:-1]} <= {size}
 
-    @pytest.mark.parametrize(
-        ("offset", "length", "read"),
-        [
-            (0, 4, b"0123"),
-            (7, 3, b"789"),
-            (7, 6, b"789\xff\xff\xff"),
-            (10, 2, b"\xff\xff"),
-            (50, 1, b"\xff"),
-        ],
-    )
-    def test_what_is_beyond_the_end_reads_as_erased(self, path, offset, length, read):
-        path.write_bytes(b"0123456789")
-        buf = bytearray(b"U" * length)
-        FileStorage(path).readblock(offset, buf)
-        assert buf == read
-        FileStorage(path.with_name("missing")).readblock(offset, buf)
-        assert buf == b"\xff" * length
-
     @pytest.mark.parametrize("synced", [True, False])
     def test_what_is_written_is_there_and_what_was_there_stays(self, path, monkeypatch, synced):
         told = []

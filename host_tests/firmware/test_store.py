@@ -24,7 +24,7 @@ BLANK = array("i", [99] * WORDS)
 
 
 def make_store(memory, **options):
-    return Store(memory, options.pop("binding", BINDING), 4 * WORDS, **options)
+    return Store(memory, **{"binding": BINDING, "size": 4 * WORDS, **options})
 
 
 def loaded(memory, **options):
@@ -118,16 +118,6 @@ def test_a_bit_turned_under_a_living_store_and_then_a_cut_cost_one_of_the_slots(
         memory_of_two.cut_after, memory_of_two.bytes[:] = None, image
 
 
-def test_a_bit_turned_in_both_slots_is_a_clean_start(memory_of_two):
-    slot_bits = 8 * make_store(memory_of_two).slot_bytes
-    for bit in range(slot_bits):
-        memory_of_two.flip(bit)
-        memory_of_two.flip(slot_bits + (bit * 7 + 3) % slot_bits)
-        assert loaded(memory_of_two) == (codes.DAMAGED, BLANK)
-        memory_of_two.flip(bit)
-        memory_of_two.flip(slot_bits + (bit * 7 + 3) % slot_bits)
-
-
 @given(noise=st.binary(min_size=200, max_size=200))
 def test_noise_is_never_loaded_and_never_raises(noise):
     memory = FakeMemory(4096)
@@ -144,22 +134,12 @@ def test_a_storage_that_fails_is_a_reason_and_not_an_exception(memory_of_two):
     assert store.failures == 1
 
 
-def test_a_storage_that_reads_another_thing_each_time_cannot_be_read(memory_of_two):
-    reads, readblock = [], memory_of_two.readblock
-
-    def read(offset, buf):
-        readblock(offset, buf)
-        reads.append(offset)
-        buf[-1] ^= len(reads) > 2
-
-    memory_of_two.readblock = read
-    assert loaded(memory_of_two) == (codes.UNREADABLE, array("i", [0] * WORDS))
-
-
 @pytest.mark.parametrize(
     "options",
     [
         {"binding": bytes(9)},
+        {"size": 0},
+        {"size": 65536},
         {"version": -1},
         {"version": 256},
         {"pitch": 1},
@@ -171,12 +151,6 @@ def test_a_storage_that_reads_another_thing_each_time_cannot_be_read(memory_of_t
 def test_what_does_not_fit_is_a_value_error(memory, options):
     with pytest.raises(ValueError):
         make_store(memory, **options)
-
-
-@pytest.mark.parametrize("size", [0, 65536])
-def test_a_size_that_does_not_fit_is_a_value_error(memory, size):
-    with pytest.raises(ValueError):
-        Store(memory, BINDING, size)
 
 
 @pytest.mark.parametrize(("size", "version", "pitch"), [(1, 0, 0), (65535, 255, 65559)])
@@ -193,17 +167,6 @@ def test_a_payload_of_another_length_is_a_value_error(memory, length):
     for use in (make_store(memory).save, make_store(memory).load):
         with pytest.raises(ValueError, match="48 bytes"):
             use(bytearray(length))
-
-
-@pytest.mark.parametrize("words", [WORDS - 1, WORDS + 1, 2 * WORDS])
-@pytest.mark.parametrize("other", [0, 1])
-def test_a_record_of_another_size_or_version_is_told_apart_and_stays(memory, words, other):
-    pitch = 4 * stores.slot_bytes(4 * WORDS)
-    older = Store(memory, BINDING, 4 * words, version=1 + other, pitch=pitch)
-    assert older.save(array("i", range(words))) and older.save(array("i", range(words)))
-    found = (codes.OTHER_SIZE, codes.OTHER_VERSION)[other]
-    assert loaded(memory, pitch=pitch) == (found, BLANK)
-    assert older.load(array("i", [0] * words)) == codes.LOADED
 
 
 @given(st.binary(max_size=300))
