@@ -2,31 +2,27 @@
 
 import os
 from collections.abc import Callable
+from contextlib import suppress
+from functools import partial
 from pathlib import Path
 
 from zerorate_tools.errors import MissingRuntime
 from zerorate_tools.runtimes.node import fetch_wasm, find_wasm
 from zerorate_tools.runtimes.runtime import CPython, Runtime, UnixPort
-from zerorate_tools.runtimes.unix_port import fetch_unix_port, find_unix_port
+from zerorate_tools.runtimes.unix_port import (
+    ARCHITECTURES,
+    fetch_unix_port,
+    find_unix_port,
+)
 
 #: The four on which the firmware must give the same state to the last bit. `find` also knows
 #: x64, what a user's `apt install micropython` gives.
 NAMES = ("cpython", "wasm", "x86", "armhf")
 
-_FIND: dict[str, Callable[[], Runtime]] = {
-    "cpython": CPython,
-    "wasm": find_wasm,
-    "x86": lambda: find_unix_port("x86"),
-    "armhf": lambda: find_unix_port("armhf"),
-    "x64": lambda: find_unix_port("x64"),
-}
-_FETCH: dict[str, Callable[[], None]] = {
-    "cpython": lambda: None,
-    "wasm": fetch_wasm,
-    "x86": lambda: fetch_unix_port("x86"),
-    "armhf": lambda: fetch_unix_port("armhf"),
-    "x64": lambda: fetch_unix_port("x64"),
-}
+_FIND: dict[str, Callable[[], Runtime]] = {"cpython": CPython, "wasm": find_wasm}
+_FIND |= {name: partial(find_unix_port, name) for name in ARCHITECTURES}
+_FETCH: dict[str, Callable[[], None]] = {"cpython": lambda: None, "wasm": fetch_wasm}
+_FETCH |= {name: partial(fetch_unix_port, name) for name in ARCHITECTURES}
 
 
 def find(name: str | Path) -> Runtime:
@@ -48,25 +44,20 @@ def find(name: str | Path) -> Runtime:
 
 def fetch(name: str) -> Runtime:
     """Fetch an interpreter into the cache unless it is there, and find it. MissingRuntime."""
-    if name not in _FETCH:
-        raise MissingRuntime(f"{name} cannot be fetched; these can: {', '.join(_FETCH)}")
     _FETCH[name]()
     return find(name)
 
 
 def available() -> list[str]:
     """Those of NAMES that this machine can run now."""
-    return [name for name in NAMES if _is_there(name)]
+    found = []
+    for name in NAMES:
+        with suppress(MissingRuntime):
+            find(name)
+            found.append(name)
+    return found
 
 
 def how_to_get(name: str) -> str:
     """The sentence that tells a person how to get an interpreter."""
     return f"`zerorate runtimes get {name}` fetches it"
-
-
-def _is_there(name: str) -> bool:
-    try:
-        find(name)
-    except MissingRuntime:
-        return False
-    return True

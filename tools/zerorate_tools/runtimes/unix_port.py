@@ -24,7 +24,7 @@ _PACKAGES = (
     *("micropython", "libc6", "libffi8", "libmbedcrypto16", "libmbedtls21", "libmbedx509-7"),
     "libgcc-s1",
 )
-_ARCHITECTURES = {"x86": "i386", "armhf": "armhf", "x64": "amd64"}
+ARCHITECTURES = {"x86": "i386", "armhf": "armhf", "x64": "amd64"}
 _LOADERS = {
     "x86": "usr/lib/i386-linux-gnu/ld-linux.so.2",
     "x64": "usr/lib/x86_64-linux-gnu/ld-linux-x86-64.so.2",
@@ -41,8 +41,11 @@ def find_unix_port(name: str) -> UnixPort:
     folder = _folder(name)
     if not folder.is_dir():
         raise MissingRuntime(f"the {name} interpreter is not fetched yet")
-    emulated = name == "armhf"
-    launcher = (qemu_arm(), "-L", str(folder)) if emulated else _loader(folder / _LOADERS[name])
+    if name == "armhf":
+        launcher = (qemu_arm(), "-L", str(folder))
+    else:
+        loader = folder / _LOADERS[name]
+        launcher = (str(loader), "--library-path", str(loader.parent))
     return UnixPort(name, folder / "usr/bin/micropython", launcher)
 
 
@@ -50,27 +53,16 @@ def fetch_unix_port(name: str) -> None:
     """Fetch and unpack `x86`, `armhf` (with qemu-arm if the system has none) or `x64`."""
     if name != "armhf" and host_architecture() != "amd64":
         raise MissingRuntime(f"{name} runs on x86-64 machines only")
-    fetch_folder(_folder(name).name, _ARCHITECTURES[name], _PACKAGES, link_lib=name == "armhf")
+    fill(_folder(name), lambda folder: _fetch_interpreter(folder, ARCHITECTURES[name]))
     if name == "armhf" and not shutil.which("qemu-arm"):
-        fill(_qemu_folder(), _fetch_qemu)
+        fill(_folder("qemu-arm"), _fetch_qemu)
 
 
-def fetch_folder(
-    name: str, architecture: str, packages: Sequence[str], link_lib: bool = False
-) -> Path:
-    """Unpack Debian 13 packages into the cache folder `name` unless it is there; return it.
-
-    link_lib: add the link lib -> usr/lib, which a program's own loader path needs.
-    """
-
-    def build(folder: Path) -> None:
-        with tempfile.TemporaryDirectory(prefix="zerorate-deb-") as download:
-            for deb in fetch_packages(Path(download), architecture, packages):
-                unpack(deb, folder)
-        if link_lib:
-            (folder / "lib").symlink_to("usr/lib")
-
-    return fill(runtime_folder(name), build)
+def _fetch_interpreter(folder: Path, architecture: str) -> None:
+    with tempfile.TemporaryDirectory(prefix="zerorate-deb-") as download:
+        for deb in fetch_packages(Path(download), architecture, _PACKAGES):
+            unpack(deb, folder)
+    (folder / "lib").symlink_to("usr/lib")  # where a program says that its loader is
 
 
 def _fetch_qemu(folder: Path) -> None:
@@ -84,17 +76,9 @@ def _folder(name: str) -> Path:
     return runtime_folder(f"{name}-debian13")
 
 
-def _qemu_folder() -> Path:
-    return runtime_folder("qemu-arm-debian13")
-
-
-def _loader(loader: Path) -> tuple[str, ...]:
-    return (str(loader), "--library-path", str(loader.parent))
-
-
 def qemu_arm() -> str:
     """What runs armhf programs: the system's, else the fetched one. Raises MissingRuntime."""
-    own = _qemu_folder() / _QEMU
+    own = _folder("qemu-arm") / _QEMU
     qemu = shutil.which("qemu-arm") or (str(own) if own.is_file() else None)
     if qemu is None:
         raise MissingRuntime("qemu-arm, which runs armhf programs, is missing")
@@ -111,7 +95,7 @@ def fetch_packages(folder: Path, architecture: str, packages: Sequence[str]) -> 
         _download_listed(folder, architecture, packages)
     except MissingRuntime:
         pinned = _pinned(architecture)
-        if not set(packages) <= set(pinned):
+        if set(packages) - set(pinned):
             raise
         for package in packages:
             _download_pinned(mirror, folder, *pinned[package])
@@ -195,13 +179,12 @@ def _own_mirror() -> str:
 
 def _debian_codename() -> str:
     try:
-        said = Path("/etc/os-release").read_text(encoding="utf-8")
+        release = platform.freedesktop_os_release()
     except OSError:
-        said = ""
-    fields = dict(re.findall(r'^(\w+)="?([^"\n]*)"?$', said, re.MULTILINE))
-    if fields.get("ID") != "debian" or not fields.get("VERSION_CODENAME"):
+        release = {}
+    if release.get("ID") != "debian" or not release.get("VERSION_CODENAME"):
         raise MissingRuntime("this machine is not Debian, whose package source would be used")
-    return fields["VERSION_CODENAME"]
+    return release["VERSION_CODENAME"]
 
 
 def _apt(arguments: Sequence[str], cwd: Path | None = None) -> str:
