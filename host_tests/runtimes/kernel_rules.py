@@ -1,4 +1,6 @@
-"""What a kernel may hold to do the same on CPython, as bytecode and as C.
+"""What a kernel may hold to do the same on CPython, as bytecode and as C, whose writer takes it.
+
+What is outside the subset is refused by that writer (zerorate_tools.kernels.c_functions).
 
 Source: each rule was tried on MicroPython 1.25 and 1.27. A path without return gives garbage in C,
 a shift by 32 differs between processors, and bytecode takes heap for what leaves 31 bits.
@@ -8,39 +10,25 @@ import ast
 import re
 import subprocess
 import tempfile
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from zerorate_tools.kernels.c_functions import kernels_in_c
 from zerorate_tools.kernels.library import zig_cc
 from zerorate_tools.kernels.reading import KernelFile, Kernels
 
-_ALLOWED: tuple[type[ast.AST], ...] = (
-    *(ast.Assign, ast.AugAssign, ast.Return, ast.If, ast.While, ast.For, ast.Expr),
-    *(ast.Break, ast.Continue, ast.Pass, ast.expr_context),
-    *(ast.Name, ast.Constant, ast.Compare, ast.BoolOp, ast.UnaryOp, ast.BinOp),
-    *(ast.IfExp, ast.Subscript, ast.Call),
-    *(ast.Add, ast.Sub, ast.Mult, ast.FloorDiv, ast.Mod, ast.BitAnd, ast.BitOr),
-    *(ast.BitXor, ast.LShift, ast.RShift, ast.UAdd, ast.USub, ast.Invert, ast.Not),
-    *(ast.Eq, ast.NotEq, ast.Lt, ast.LtE, ast.Gt, ast.GtE, ast.And, ast.Or),
-)
 _KINDS = ("int", "ptr32")
 _LIMIT = 1 << 30
 _LONGEST_SHIFT = 30
 
 
-def breaches(path: Path, kernels: Collection[str]) -> list[str]:
-    """Every breach in the annotated functions of a file, as `file:row: what`.
-
-    kernels: names of all kernel functions, which a kernel may call.
-    """
+def breaches(path: Path) -> list[str]:
+    """Every breach in the annotated functions of a file, as `file:row: what`."""
     lines = path.read_text(encoding="utf-8").splitlines()
     return [
         f"{path.name}:{row}: {what}"
         for function in KernelFile(path).kernels.values()
-        for row, what in sorted(
-            {*_signature(function), *_body(function, kernels), *_anew(function, lines)}
-        )
+        for row, what in sorted({*_signature(function), *_body(function), *_anew(function, lines)})
     ]
 
 
@@ -83,18 +71,14 @@ def _signature(function: ast.FunctionDef) -> Iterator[tuple[int, str]]:
         yield function.lineno, "a result is an int"
 
 
-def _body(function: ast.FunctionDef, kernels: Collection[str]) -> Iterator[tuple[int, str]]:
+def _body(function: ast.FunctionDef) -> Iterator[tuple[int, str]]:
     has_docstring = ast.get_docstring(function) is not None
     statements = function.body[1:] if has_docstring else function.body
     yield from _after_its_loop(statements)
     for node in (n for statement in statements for n in ast.walk(statement)):
         row = getattr(node, "lineno", function.lineno)
-        if not isinstance(node, _ALLOWED):
-            yield row, f"{type(node).__name__} is not for kernels"
-        elif isinstance(node, ast.For):
+        if isinstance(node, ast.For):
             yield from ((row, what) for what in _counted(node))
-        elif isinstance(node, ast.Call):
-            yield from ((row, what) for what in _call(node, kernels))
         elif isinstance(node, ast.Return) and node.value is not None and not function.returns:
             yield row, f"{function.name} returns a value without `-> int`"
         else:
@@ -103,9 +87,7 @@ def _body(function: ast.FunctionDef, kernels: Collection[str]) -> Iterator[tuple
 
 def _counted(loop: ast.For) -> Iterator[str]:
     """C counts by a test before each round, Python by numbers known before the first."""
-    if not isinstance(loop.iter, ast.Call) or _name(loop.iter.func) != "range":
-        yield "a for loop counts through a range"
-        return
+    assert isinstance(loop.iter, ast.Call)
     if not isinstance(loop.iter.args[-1], ast.Constant) and len(loop.iter.args) == 3:
         yield "a range whose step is no number takes heap"
     names = [n for s in loop.body for n in ast.walk(s) if isinstance(n, ast.Name)]
@@ -131,18 +113,8 @@ def _after_its_loop(statements: Sequence[ast.stmt]) -> Iterator[tuple[int, str]]
             yield following.lineno, f"{counter}, which a loop counted, is another in C behind it"
 
 
-def _call(node: ast.Call, kernels: Collection[str]) -> Iterator[str]:
-    name = _name(node.func)
-    if name == "range":
-        return
-    if name not in kernels:
-        yield f"{name or 'an expression'} is called, which is no kernel"
-    if node.keywords or any(isinstance(a, ast.Starred) for a in node.args):
-        yield f"{name} is called with other than positional arguments"
-
-
 def _node(node: ast.AST) -> Iterator[str]:
-    if isinstance(node, ast.Constant) and not _is_small(node.value):
+    if isinstance(node, ast.Constant) and node.value >= _LIMIT:
         yield f"{node.value!r} is no integer below 2^30"
     elif isinstance(node, (ast.BinOp, ast.AugAssign)):
         right = node.right if isinstance(node, ast.BinOp) else node.value
@@ -158,10 +130,6 @@ def _operation(operator: ast.operator, right: ast.expr) -> Iterator[str]:
         yield f"a shift by {right.value}; at most {_LONGEST_SHIFT}"
     if isinstance(operator, (ast.FloorDiv, ast.Mod)) and right.value == 0:
         yield "division by zero ends the program in C"
-
-
-def _is_small(value: object) -> bool:
-    return isinstance(value, int) and value < _LIMIT
 
 
 def _name(node: ast.expr | None) -> str:

@@ -3,12 +3,11 @@
 import ast
 import re
 import subprocess
-from contextlib import suppress
 from pathlib import Path
 
 import pytest
 from zerorate_tools.errors import ZerorateError
-from zerorate_tools.kernels.reading import KernelFile, NotKernel, kernel_files
+from zerorate_tools.kernels.reading import KernelFile, kernel_files
 from zerorate_tools.runtimes.runtime import UnixPort
 
 from .kernel_rules import breaches, left_open
@@ -39,23 +38,10 @@ def total(s: ptr32, w: ptr32, n: int) -> int:
 def give_up(s: ptr32, n: int):
     n -= 1  # eleven words: n is from here on the word before
     s[n] ^= 5
-
-
-def object_of_a_person(s, deep=None):
-    return [x for x in s] or (lambda: deep)
 '''
 
 BROKEN = [
-    ("return s[0:n]", "Slice is not for kernels"),
-    ("return [1, 2][n]", "List is not for kernels"),
-    ("return n ** 2", "Pow is not for kernels"),
-    ("return n / 2", "Div is not for kernels"),
-    ("return len(s)", "len is called"),
-    ("return s.index(n)", "an expression is called"),
-    ("return total(s, n=n)", "other than positional"),
-    ("return n * 1.5", "1.5 is no integer"),
     ("return n & 0x40000000", "1073741824 is no integer below"),
-    ("return n == None", "None is no integer"),
     ("return n << 31", "a shift by 31"),
     ("n -= 1\n    return n", "the parameter n is assigned"),
     ("n -= 1  # eleven words: the one before\n    return n", "the parameter n is assigned"),
@@ -63,15 +49,11 @@ BROKEN = [
     ("return n // 0", "division by zero"),
     ("n %= 0\n    return n", "division by zero"),
     ("return s[-1]", "a negative index"),
-    ("return n in s", "In is not for kernels"),
-    ("raise ValueError", "Raise is not for kernels"),
-    ("for x in s:\n        n += x\n    return n", "a for loop counts through a range"),
     ("a = n\n    for i in range(a):\n        a -= 1\n    return a", "counts by changes within it"),
     ("for i in range(3):\n        i += 1\n    return n", "counts by changes within it"),
     ("for i in range(s[0]):\n        s[0] -= 1\n    return n", "a number, a local or a setting"),
     ("for i in range(0, n, n):\n        s[i] = 0\n    return n", "takes heap"),
     ("for i in range(3):\n        s[i] = 0\n    return i", "is another in C behind it"),
-    ("a, b = n, n\n    return a", "Tuple is not for kernels"),
     ("s[0] = n", "does not return a value"),
     ("if n:\n        return 1", "does not return a value"),
     ("while 1:\n        if n:\n            break", "does not return a value"),
@@ -99,10 +81,7 @@ def breaches_of(tmp_path):
     def find(text):
         file = tmp_path / "kernel.py"
         file.write_text(text)
-        found = breaches(file, {"total", "give_up"})
-        with suppress(NotKernel, KeyError):
-            found += left_open(tmp_path)
-        return found
+        return breaches(file) + left_open(tmp_path)
 
     return find
 
@@ -124,15 +103,14 @@ def test_each_breach_of_a_signature_is_found(breaches_of, header, what):
 
 
 def test_a_breach_is_named_with_its_row(breaches_of):
-    found = breaches_of("def f(s: ptr32) -> int:\n    s[0] = 1\n    return s[0] * 0.5\n")
-    assert found == ["kernel.py:3: 0.5 is no integer below 2^30"]
+    found = breaches_of("def f(s: ptr32) -> int:\n    s[0] = 1\n    return s[0] >> 31\n")
+    assert found == ["kernel.py:3: a shift by 31; at most 30"]
 
 
 def test_the_firmwares_kernels_have_no_breach(repository):
     files = kernel_files(repository / "firmware" / "zerorate")
-    kernels = {name for file in files for name in KernelFile(file).kernels}
-    assert len(kernels) > 10
-    assert [line for file in files for line in breaches(file, kernels)] == []
+    assert len(files) > 10
+    assert [line for file in files for line in breaches(file)] == []
     assert left_open(repository / "firmware" / "zerorate") == []
 
 
