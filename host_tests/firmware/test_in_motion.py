@@ -154,22 +154,6 @@ def test_a_window_in_three_passes_is_read_before_it_is_overwritten(hz):
     assert MOTION_REASON.LOST not in learner.reasons
 
 
-def test_a_gap_in_time_begins_a_new_window():
-    motion = motions.swinging(2, 10)
-    learner = Learner().feed(motion)
-    assert learner.state[MOTION.FILLED] > 0
-    in_motion.update(learner.state, learner.settings, motion.samples[0].tolist(), 500000)
-    assert learner.state[MOTION.FILLED] == 0
-    assert learner.state[REASON] == MOTION_REASON.MOTION_GAP
-
-
-def test_each_pass_of_the_documents_own_form_leaves_a_smaller_slope():
-    learner = Learner(document=True).feed(motions.swinging(3, 20))
-    slopes = np.abs(np.array(learner.state[SLOPES : SLOPES + 9])).reshape(3, 3).max(axis=1)
-    assert len(learner.learned) == 1
-    assert slopes[0] > slopes[1] > slopes[2] > 0
-
-
 def test_the_documents_own_form_finds_the_bias_of_a_swing_about_one_axis():
     t = np.arange(30 * 50 + 1) / 50
     swing = Rotation.from_rotvec(0.35 * np.sin(2 * np.pi * t)[:, None] * [1, 0, 0])

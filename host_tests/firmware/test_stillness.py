@@ -129,12 +129,6 @@ def test_a_sinusoid_of_550_mdps_is_no_rest(hz):
     assert "the gyroscope sees motion" in corrector.explain()
 
 
-def test_a_reading_that_is_still_for_11_s_at_10_hz_is_learned():
-    frames = rest(11, 1, (0.15, 0.15, 0.15), odr_hz=10)
-    corrector, _ = play(frames, Corrector(Sensor(odr_hz=10.0)))
-    assert min(corrector.source(axis) for axis in range(3)) > 0
-
-
 def test_shaking_that_only_the_accelerometer_sees_is_said():
     frames = rest(20)
     frames[:, 0] += np.random.default_rng(4).normal(0, 1500, len(frames))
