@@ -155,7 +155,7 @@ CALLED_BY_OTHERS = {
     "pytest_collection_modifyitems",
     *("busio_i2c", "polled", "impatient"),
     *("__getattr__", "__dir__", "handle_starttag", "handle_data"),
-    *("_constant", "_subscript", "_binop", "_unaryop", "_boolop", "_ifexp"),
+    *("_constant", "_subscript", "_binop", "_unaryop", "_boolop", "_ifexp", "_call"),
     *("how_sure", "found_in_short", "write_device", "make_folders", "put_in_place"),
     *("unlock", "enable_pec", "block_process_call", "get_code", "generate_launch_description"),
 }

@@ -190,7 +190,7 @@ def test_a_quicker_process_wins(own_cache):
 
 @pytest.mark.parametrize("missing", [{"ID": "fedora"}, {"VERSION_CODENAME": ""}])
 def test_a_machine_that_is_not_debian_is_told_so(bookworm, missing):
-    bookworm |= missing
+    bookworm.update(missing)
     with pytest.raises(MissingRuntime, match="not Debian"):
         unix_port.fetch_packages(Path(), "i386", ["micropython"])
 
