@@ -42,7 +42,7 @@ class Motion:
         samples[:, 4:] = rates * GYRO_LSB_PER_DPS
         self.samples = np.clip(np.round(samples), -32768, 32767).astype(int)
         self.bias_dps = np.asarray(bias_dps)
-        self.hz = hz
+        self.hz, self.attitude = hz, attitude
 
 
 def pose(seed):

@@ -9,10 +9,10 @@ from zerorate import Corrector, Sensor
 from zerorate.motion import increments, tilt_frame
 from zerorate.motion.motion_settings import motion_settings, motion_state
 from zerorate.motion.orientation import level, orientation
-from zerorate_tools.layout import MOTION, MOTION_SETTINGS
+from zerorate_tools.layout import MOTION
 
 from . import motions
-from .motions import Q11, Q12, Q14, SETTINGS, put_words, rotation_at
+from .motions import Q12, Q14, SETTINGS, put_words, rotation_at
 from .played import by_machine_code
 
 
@@ -36,32 +36,6 @@ def test_the_least_turn_makes_the_mean_force_vertical(state, draw, way, size):
     # about a level axis: of what points down first half about x
     least = turn if force[2] >= 0 else turn * Rotation.from_rotvec([-np.pi, 0, 0])
     assert abs(least.as_rotvec()[2]) < (0.05 if size < 100 else 2e-3)
-
-
-def test_a_node_holds_the_turn_of_its_samples_and_their_mean_force(state, draw):
-    state[MOTION.FILLED] = 1
-    rates_dps, force_g = draw.uniform(-150, 150, (13, 3)), draw.uniform(-1, 1, (13, 3))
-    node_us, dt_us = SETTINGS[MOTION_SETTINGS.NODE_US], 10000
-    turn, total = Rotation.identity(), np.zeros(3)
-    for rate, force in zip(rates_dps, force_g):
-        frame = array("i", [int(v) for v in np.rint([*force * 16384, 0, *rate * 131])])
-        full = increments.gather(state, SETTINGS, frame, dt_us)
-        # in the frame of the node's start
-        total += force + np.cross(turn.as_rotvec(), force)
-        turn = turn * Rotation.from_rotvec(np.radians(rate) * dt_us * 1e-6)
-    assert full
-    angle = np.array(state[MOTION.NODE_ANGLE_Q24 : MOTION.NODE_ANGLE_Q24 + 3]) / (1 << 24)
-    plain = np.radians(rates_dps.sum(axis=0)) * dt_us * 1e-6
-    off = np.linalg.norm(angle - turn.as_rotvec())
-    assert off < 0.003 and off < 0.3 * np.linalg.norm(plain - turn.as_rotvec())
-    increments.close(state, SETTINGS)
-    assert state[MOTION.NODE_ELAPSED_US] == 13 * dt_us - node_us
-    assert state[MOTION.HEAD] == state[MOTION.NEW_NODES] == state[MOTION.AGE_NODES] == 1
-    words = np.array(state[MOTION.NODES_RING : MOTION.NODES_RING + 3])
-    left = np.array(state[MOTION.NODE_ANGLE_Q24 : MOTION.NODE_ANGLE_Q24 + 3]) / (1 << 24)
-    assert (words >> 15) / 8192 + left == pytest.approx(angle, abs=1e-7)
-    force = ((words & 0x7FFF) ^ 0x4000) - 0x4000
-    assert force / Q11 == pytest.approx(total / 13, abs=0.01)
 
 
 def test_a_node_of_a_fast_hand_holds_its_turn_and_force_to_second_order(draw):
@@ -99,28 +73,19 @@ SWUNG_HZ = 50.0
 SWUNG_BIAS_DPS = np.array([1.0, -2.0, 3.0])
 
 
-def swung_about(seed, seconds):
-    """(attitude, samples): swinging about a lean, with a bias."""
-    t = np.arange(int(seconds * SWUNG_HZ) + 1) / SWUNG_HZ
-    draw = np.random.default_rng(seed)
-    angles = np.sin(2 * np.pi * draw.uniform(0.4, 1.2, 3) * t[:, None]) * draw.uniform(0.2, 0.6, 3)
-    attitude = Rotation.from_rotvec([0.5, -0.6, 0.2]) * Rotation.from_rotvec(angles)
-    return attitude, motions.Motion(attitude, SWUNG_BIAS_DPS, SWUNG_HZ, seed).samples.astype(
-        np.int32
-    )
-
-
 def as_rotation(found):
     return Rotation.from_quat([*found[1:], found[0]])
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_it_is_level_and_turned_as_the_body_is(seed):
-    attitude, samples = swung_about(seed, 60)
+    lean = Rotation.from_rotvec([0.5, -0.6, 0.2])
+    swing = motions.swinging(seed, 60, SWUNG_HZ, SWUNG_BIAS_DPS, start=lean)
     corrector = Corrector(Sensor(SWUNG_HZ))
-    by_machine_code(corrector, samples, np.full(len(samples), round(1e6 / SWUNG_HZ)))
+    dt_us = np.full(len(swing.samples), round(1e6 / SWUNG_HZ))
+    by_machine_code(corrector, swing.samples.astype(np.int32), dt_us)
     now = as_rotation(orientation(corrector))
-    up = now.inv().apply([0, 0, 1]) @ attitude[-1].inv().apply([0, 0, 1])
+    up = now.inv().apply([0, 0, 1]) @ swing.attitude[-1].inv().apply([0, 0, 1])
     assert np.degrees(np.arccos(min(1.0, up))) < 1.5
     corrector.state[:] = array("i", [0] * len(corrector.state))  # what a bias left on does to it
     left_on = as_rotation(orientation(corrector))

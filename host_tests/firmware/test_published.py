@@ -12,8 +12,6 @@ from .played import LSB, play
 from .played import rest as played_rest
 from .test_stillness import BIAS_DPS, handled, turning
 
-# What other sources find
-
 
 def quality_dps(corrector, axis=0):
     return corrector.quality_lsb(axis) / LSB
