@@ -1,7 +1,5 @@
 """The estimators of one axis against a model cache: what is kept, evicted, promoted, replaced."""
 
-import random
-
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -135,66 +133,4 @@ def test_noise_at_a_boundary_of_two_degrees_does_not_thrash_the_cache(noise):
     assert {20 * STEP, 40 * STEP} < set(axis.recent_first)
 
 
-def test_a_temperature_passed_in_five_seconds_is_remembered():
-    corrector = Corrector()
-    axis = Axis(promote_s=corrector.settings[SETTINGS.PROMOTE] / 100)
-    for degree in range(6):
-        axis.learn(degree * STEP, 5, 500)
-    assert {0, STEP, 2 * STEP} <= {temp for temp, _ in axis.long}
-
-
-def test_more_readings_than_a_bin_can_count_are_still_more(axis):
-    for _ in range(3):
-        axis.learn(0, weight=10000)
-    axis.learn(STEP * 5, weight=10000)
-    assert sorted(count for _, count in axis.short) == [0, 10000, 30000]
-
-
 # Which long-term estimator gives way
-
-
-def filled(draw, document):
-    """An axis whose long-term estimators hold drawn temperatures, and its words of each."""
-    corrector = Corrector(Sensor(), document=document, motion=False, gravity=False)
-    s, c = corrector.state, corrector.settings
-    a, words = c[SETTINGS.AXES], c[SETTINGS.ESTIMATOR_WORDS]
-    long = list(range(a + c[SETTINGS.FIRST_LONG], a + c[SETTINGS.ESTIMATORS_END], words))
-    for e in [a + c[SETTINGS.FIRST_SHORT], *long]:
-        s[e], s[e + ESTIMATOR.EST_READINGS] = draw.randrange(-9, 10) * STEP, draw.randrange(1, 9)
-    s[a + AXIS.COLDEST], s[a + AXIS.HOTTEST] = -5 * STEP - 1, draw.randrange(5, 9) * STEP
-    if draw.random() < 0.2:
-        s[draw.choice(long)] = FREE
-    return s, c, a, long
-
-
-def gives_way(s, c, a, long, candidate):
-    """The estimator that the candidate replaces, or itself, by plain sorting."""
-    temp = {e: s[e] for e in [*long, candidate]}
-    readings = {e: s[e + ESTIMATOR.EST_READINGS] for e in temp}
-    if FREE in temp.values():
-        return next(e for e in long if temp[e] == FREE)
-    cold, hot = s[a + AXIS.COLDEST], s[a + AXIS.HOTTEST]
-    part = {e: min(2, max(0, (temp[e] - cold) * 3 // (hot - cold + 1))) for e in temp}
-    rich = {
-        k: max((e for e in long if part[e] == k), key=readings.get, default=0) for k in range(3)
-    }
-    free = [e for e in long if part[e] == part[candidate] or rich[part[e]] != e]
-    if c[SETTINGS.LITERAL]:
-        poor = min(free, key=readings.get, default=candidate)
-        return poor if readings[poor] < readings[candidate] else candidate
-    gap = {e: min(abs(temp[e] - temp[other]) for other in long if other != e) for e in temp}
-    ends = min(temp[e] for e in long), max(temp[e] for e in long)
-    crowded = min((e for e in free if temp[e] not in ends), key=gap.get, default=candidate)
-    return crowded if gap[crowded] < gap[candidate] else candidate
-
-
-@pytest.mark.parametrize("document", [False, True])
-def test_the_poorest_gives_way_by_the_document_else_the_most_crowded_of_the_midst(document):
-    chosen = set()
-    for seed in range(400):
-        s, c, a, long = filled(random.Random(seed), document)
-        candidate = a + c[SETTINGS.FIRST_SHORT]
-        found = estimators.victim(s, c, a, candidate)
-        assert found == gives_way(s, c, a, long, candidate), seed
-        chosen.add(found)
-    assert chosen == {candidate, *long}

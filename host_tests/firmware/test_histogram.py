@@ -119,35 +119,6 @@ def test_halving_loses_no_more_than_rounding(mode, readings):
     sound(made)
 
 
-def test_what_would_overflow_a_count_is_halved_first():
-    made = Histogram("every")
-    for _ in range(200):
-        made.add(7, 256)
-    assert 0x2000 - 256 <= sum(made.counts) <= 0x3FFF
-    assert made.read_out == pytest.approx(7, abs=0.01)
-
-
-@pytest.mark.parametrize("mode", ["document", "every", "default"])
-def test_no_bin_gets_narrower_by_splitting_than_it_may(mode):
-    made = Histogram(mode)
-    for n in range(20000):
-        made.add(100 + n * 7919 % 3)
-    best = histogram.most_significant(made.s, made.h, made.bins)
-    assert made.edges[best] <= 101 < made.edges[best + 1]
-    assert made.widths[best] >= made.c[SETTINGS.NARROWEST_LSB]
-    assert min(made.widths) >= 1
-
-
-@pytest.mark.parametrize("reading", [-32768, -20000, 20000, 32767])
-def test_a_reading_outside_extends_the_extreme_bin(reading):
-    made = Histogram("document")
-    inner = made.edges[1:-1]
-    found = histogram.place(made.s, made.c, made.h, reading)
-    assert found == (0 if reading < 0 else made.bins - 1)
-    assert made.edges[0] <= reading < made.edges[-1]
-    assert made.edges[1:-1] == inner
-
-
 @pytest.mark.parametrize("reading", [-32768, -20000, 20000, 32767])
 def test_a_reading_outside_is_ignored_by_option(reading):
     made = Histogram("ignoring")

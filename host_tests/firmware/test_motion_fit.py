@@ -45,16 +45,6 @@ def bells(t):
     return [rest**3, 2 * t * rest**3], shapes
 
 
-def test_a_shape_is_what_its_bell_falls_by():
-    t = np.linspace(-1, 1, 4001)
-    curves, shapes = bells(t)
-    for curve, shape in zip(curves, shapes):
-        assert -np.gradient(curve, t)[1:-1] == pytest.approx(shape[1:-1], abs=2e-5)
-    # what a steady turn adds to the other shapes: nothing
-    for shape in shapes[1:]:
-        assert np.mean(shape * t) == pytest.approx(0, abs=1e-3)
-
-
 @pytest.mark.parametrize("stage", [4, 5, 7])
 def test_the_rows_are_the_sums_under_both_bells(state, draw, stage):
     n = 1 << stage

@@ -158,7 +158,7 @@ def _rest():
     """A trace in every mode, in bursts again after a power-on; and a device that swings."""
     for mode in trace.MODES:
         corrector = corrector_for(mode)
-        rows, dt_us = frames(7000 if mode == "default" else 1500)
+        rows, dt_us = frames(7000 if mode == "default" else 3000)
         for row, dt in zip(rows.tolist(), dt_us.tolist()):
             corrector.update(array("i", row), dt)
         corrector.power_on()
