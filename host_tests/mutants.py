@@ -135,7 +135,8 @@ AREAS = {
     ),
     "fit": (
         [_TOOLS + "loop/fit/"],
-        ["loop/test_fit_dense.py", "loop/test_fit_by_hand.py", "loop/test_smooth.py"],
+        ["loop/test_fit_dense.py", "loop/test_fit_by_hand.py", "loop/test_smooth.py"]
+        + [_FIGURES + "[steps found]", _FIGURES + "[reported]"],
     ),
     "search": (
         [_TOOLS + "loop/search/"],
@@ -144,7 +145,7 @@ AREAS = {
     ),
     "verify": (
         [_TOOLS + "loop/verify/"],
-        ["loop/test_verify_by_hand.py", "loop/test_kernels_by_hand.py"],
+        ["loop/test_verify_by_hand.py", "loop/test_kernels_by_hand.py", _FIGURES + "[reported]"],
     ),
     "turning": (
         [_TOOLS + "loop/motion/"],

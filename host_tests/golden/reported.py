@@ -25,10 +25,9 @@ from zerorate_tools.loop.search.select import select
 from zerorate_tools.loop.search.selection import Found, Selection
 from zerorate_tools.loop.search.steps import Step
 from zerorate_tools.loop.search.steps_first import remove_steps
-from zerorate_tools.loop.verify.analysis import Analysis
+from zerorate_tools.loop.verify.analysis import Analysis, model_of
 from zerorate_tools.loop.verify.courses import AFTER, BEFORE, ONLINE, ONLINE_BEFORE, Course, Courses
 from zerorate_tools.loop.verify.judge import ResidualTest, judge
-from zerorate_tools.loop.verify.slots import model_of
 from zerorate_tools.model import build_model, write_model
 from zerorate_tools.model.term import Term
 from zerorate_tools.recordings import open_recording

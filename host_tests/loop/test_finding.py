@@ -10,7 +10,6 @@ from zerorate_bench.loop.simulated import HOSTILE, simulate
 from zerorate_tools.loop.analyse import analyse
 from zerorate_tools.loop.read.sessions import block_basis
 from zerorate_tools.loop.report.report import report
-from zerorate_tools.loop.search.confounding import label
 from zerorate_tools.loop.search.select import select
 from zerorate_tools.loop.search.steps_first import remove_steps
 from zerorate_tools.loop.verify.judge import judge
@@ -26,7 +25,7 @@ def run_trial(device):
 
 
 def names(selection):
-    return [n for f in selection.found for n in (label(f.candidate), *f.confounded_with)]
+    return [n for f in selection.found for n in (f.candidate.label, *f.confounded_with)]
 
 
 @pytest.mark.parametrize("kind", ["plain", *HOSTILE])
@@ -72,7 +71,7 @@ def test_a_product_is_one_effect_wherever_its_factors_are_zero():
         product = replace(product, second_lo=0.0, second_hi=60.0)
         s.rate_dps += np.outer(block_basis(product, s), [6e-6, -4e-6, 3e-6])
     selection, judgement = run_trial(device)
-    assert [label(f.candidate) for f in selection.found] == ["supply-temperature"]
+    assert [f.candidate.label for f in selection.found] == ["supply-temperature"]
     # The line over temperature takes what another zero of the voltage would add.
     assert selection.terms[0].second_centre == pytest.approx(21.0, abs=1.5)
     assert judgement.after_rms < 0.7 * judgement.before_rms

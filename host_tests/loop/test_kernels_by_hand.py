@@ -93,35 +93,6 @@ def test_a_recording_read_in_parts_gives_what_it_gives_at_once(power_on, monkeyp
     assert parts == pytest.approx(whole, abs=0.3 / 131)
 
 
-def test_the_line_is_fitted_beside_the_terms_and_is_no_slot(power_on):
-    pieces = PiecesByKernels(power_on, SCALES)
-    line = Term("temp", centre=25.0)
-    more = [Slot(Term("temp", 0.0, 50.0, 25.0, 2), (0.001, 0.0, 0.0), "x")]
-    models = pieces.models([line], [VOLTS], None, more)
-    assert [s.term.source for s in models[0].slots] == ["volt", "temp"]
-    kept, told = PiecesByLine(power_on.session).fitted_to(pieces.parts[0], [line], [VOLTS])
-    assert models[0].slots[0].coefficient_dps == pytest.approx(told[1], abs=1e-6)
-    assert pieces.models([line], []) == [None] * 10
-    assert models[0].tick_s == 1.0
-
-
-def test_every_sample_is_run_by_the_device_of_its_turn_or_by_one_for_all(power_on):
-    pieces = PiecesByKernels(power_on, SCALES)
-    (frames,) = power_on.frames()
-    turn = pieces.fold[power_on.blocks(frames)]
-    slot = [Slot(VOLTS, (0.001, 0.0, 0.0), "x")]
-    (model,) = {m.slots: m for m in pieces.models([], [], None, slot)}.values()
-    devices = pieces.new([model if k == 4 else None for k in range(10)])
-    bias = pieces.bias_q8(devices, frames)
-    alone = devices[4].copy().run(frames, learn=False)
-    assert (bias[turn == 4] == alone[turn == 4]).all() and np.abs(bias[turn == 4, 0]).max() > 0
-    assert (bias[turn != 4] == 0).all()
-    single = pieces.new([model])
-    assert (pieces.bias_q8(single, frames) == alone).all()
-    learning = pieces.bias_q8(pieces.new([None]), frames, learn=True)
-    assert learning[-1] / 256 == pytest.approx([30, -20, 10], abs=25)
-
-
 @pytest.fixture(scope="module")
 def by_pieces(power_on):
     pieces = PiecesByKernels(power_on, SCALES)

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from scipy.optimize import brentq
-from scipy.stats import chi2, f, norm
+from scipy.stats import chi2, f
 from zerorate_tools.loop.fit.free_curve import draw, parts
 from zerorate_tools.loop.fit.left_out import gains
 from zerorate_tools.loop.fit.regression import Regression
@@ -16,10 +16,8 @@ from zerorate_tools.loop.read.lines import Line, Spectrum
 from zerorate_tools.loop.read.sessions import Session
 from zerorate_tools.loop.search import (
     catalogue,
-    confounding,
     curve,
     decide,
-    detectable,
     drift_test,
     hysteresis,
     likely_hysteresis,
@@ -28,12 +26,11 @@ from zerorate_tools.loop.search import (
     refine,
     step_places,
 )
-from zerorate_tools.loop.search.cancels import cancels
-from zerorate_tools.loop.search.catalogue import MARGIN, Candidate, candidates, ranges, varies
-from zerorate_tools.loop.search.fits_in_slots import fits_in_slots
+from zerorate_tools.loop.search.catalogue import Candidate, candidates, ranges, varies
+from zerorate_tools.loop.search.examine import cancels
 from zerorate_tools.loop.search.multiple_testing import MultipleTesting
-from zerorate_tools.loop.search.selection import Found, Selection
-from zerorate_tools.model.term import Term, first_order_lag, play
+from zerorate_tools.loop.search.selection import Found, Selection, fits_in_slots
+from zerorate_tools.model.term import Term, play
 
 from . import dense
 from .dense import A, B, C, D
@@ -140,26 +137,6 @@ def test_the_shares_of_a_family_are_by_weight_and_add_up(sessions):
     assert testing.grid("vibration") == testing.grid("linear-acceleration") == 1.0
 
 
-def test_a_grid_counts_as_many_as_its_columns_beside_line_and_bend(sessions):
-    regression = Regression(sessions)
-    testing = MultipleTesting(regression, pool(), (C,), (D,), False)
-
-    def stacked(*terms):
-        p = dense.problem(sessions, terms)
-        return p.x
-
-    x, z = stacked(A, B), stacked(C, D)
-    left = x - z @ np.linalg.lstsq(z, x, rcond=None)[0]
-    assert testing.grid("thermal-lag") == pytest.approx(decide.effective(left))
-    quadratic = [candidate(t, kind="temperature-quadratic") for t in (A, B)]
-    bend = MultipleTesting(regression, quadratic, (C,), (D,), False)
-    z = stacked(C)
-    left = x - z @ np.linalg.lstsq(z, x, rcond=None)[0]
-    assert bend.grid("temperature-quadratic") == pytest.approx(decide.effective(left))
-    plain = MultipleTesting(regression, pool(), (), (), False)
-    assert plain.grid("thermal-lag") == pytest.approx(decide.effective(x))
-
-
 def test_what_follows_time_is_asked_other_questions_where_it_can_come_again(sessions):
     regression = Regression(sessions)
     drift = candidate(Term("time"), kind="time-drift")
@@ -254,17 +231,6 @@ def test_a_colour_that_three_axes_share_costs_what_student_s_t_says():
     assert drift_test.lowness(spectrum) == pytest.approx([3.0 - 1.5, 0.0])
 
 
-def test_a_ratio_with_a_common_colour_is_the_gain_of_both_fits(sessions):
-    regression = Regression([changed(s, by=0.4) for s in sessions])
-    low = drift_test.lowness(regression.whiteners[2].spectrum)
-    told = [
-        drift_test.common_colour(regression.fit(terms).base.loglik, low) for terms in ([B], [B, A])
-    ]
-    found = drift_test.ratio_with_common_colour(regression, [B], [A])
-    assert found == pytest.approx(2 * (told[1] - told[0]))
-    assert drift_test.ratio_with_common_colour(regression, [A], [A]) == pytest.approx(0, abs=1e-6)
-
-
 def test_the_smallest_square_passes_now_and_with_one_power_on_more():
     for tried, n in ((1.0, 2), (20.0, 3)):
         squares = []
@@ -281,39 +247,6 @@ def test_the_smallest_square_passes_now_and_with_one_power_on_more():
 
 
 # --- what could have been shown, and the plain error ---
-
-
-def test_the_smallest_effect_is_what_passes_nine_times_in_ten(sessions):
-    regression = Regression(sessions)
-    regression.scale = np.array([[0.5, 1.0, 1.0], [1.0, 1.0, 2.0], [2.0, 1.0, 0.5]])
-    kinds = [candidate(A, kind="x"), candidate(C, kind="x"), candidate(D, kind="y")]
-    kinds += [candidate(B, kind="none"), candidate(A, B, kind="two")]
-    found = detectable.smallest_dps(regression, [B], kinds, lambda c: 16.0)
-    base = regression.fit([B]).base
-    sizes = {}
-    for term in (A, C, D):
-        information = 0.0
-        for a, colour in enumerate(base.best):
-            p = dense.problem(sessions, [term, B], regression.scale[:, a])
-            to = np.linalg.inv(p.v[colour])
-            x, z = p.x[:, 0], p.x[:, 1:]
-            left = x - z @ np.linalg.solve(z.T @ to @ z, z.T @ to @ x)
-            information += left @ to @ left / base.variance[a]
-        columns = [np.column_stack([s.sources[term.source], s.sources["b"]]) for s in sessions]
-        whole = np.vstack([c - c.mean(axis=0) for c in columns])
-        left = (
-            whole[:, 0] - whole[:, 1:] @ np.linalg.lstsq(whole[:, 1:], whole[:, 0], rcond=None)[0]
-        )
-        need = (4.0 + norm.ppf(0.9)) ** 2
-        sizes[term] = np.sqrt(need / information) * left.std()
-    assert found["x"] == pytest.approx(min(sizes[A], sizes[C]), rel=1e-5)
-    assert found["y"] == pytest.approx(sizes[D], rel=1e-5)
-    assert set(found) == {"x", "y"}  # what B holds, and what has two terms, is not named
-    assert detectable.smallest_dps(regression, [B], kinds[-1:], None) == {}
-    for s in sessions:
-        s.sources["same"] = np.ones(s.blocks)
-    with_it, without = (detectable._own_rms(A, of, sessions) for of in ([B, Term("same")], [B]))
-    assert with_it == pytest.approx(without)
 
 
 @pytest.mark.parametrize("beside", [[B], []])
@@ -414,25 +347,6 @@ def test_a_hysteresis_of_a_pair_is_likelier_than_what_is_simpler(
         assert found.decision.inflation == 1.0 and len(found.decision.session_gains) == 0
         assert found.decision.p_value == pytest.approx(6 * np.exp(-nats))
         assert asked == [((D,), (TEMP,)), ((D, TEMP), (A,)), ((D, TEMP), (B,))]
-
-
-def test_forms_of_a_likely_hysteresis_span_all_sessions_temperatures(monkeypatch):
-    made = [warm(temp=np.linspace(*ends, 50)) for ends in ((10.0, 20.0), (14.0, 30.0))]
-    every = list(likely_hysteresis._forms(made))
-    assert [len(form) for form in every] == [4, 8] * 3
-    for form, finest in zip(every[::2], (0.0125, 0.025, 0.05)):
-        widths = 2 * 20.0 * finest * 2.3 ** np.arange(4)
-        assert [t.width for t in form] == pytest.approx(widths.tolist())
-        assert {(t.lo, t.hi, t.centre, t.power) for t in form} == {(10.0, 30.0, 18.5, 1)}
-    assert [t.power for t in every[1]] == [1, 2] * 4
-    one = SimpleNamespace(sessions=made)
-    assert likely_hysteresis.likeliest(one, []) == (None, 0.0), "the temperature never turned back"
-    monkeypatch.setattr(likely_hysteresis, "may_show", lambda sessions: True)
-    for nats in (0.5, -0.5):
-        of = lambda r, terms, form, nats=nats: nats - (form != every[3])  # noqa: E731
-        monkeypatch.setattr(likely_hysteresis, "evidence", of)
-        likely, gain = likely_hysteresis.likeliest(one, [])
-        assert gain == nats and (likely.terms == every[3] if nats > 0 else likely is None)
 
 
 @pytest.mark.parametrize(
@@ -643,69 +557,33 @@ def test_no_step_is_looked_for_beside_motion():
     assert sorted(set(range(10, 36)) - set(step_places._ground(session))) == [20, 21, 22]
 
 
-@pytest.fixture
-def stepped():
-    """Three sessions, the second with a step a quarter into its block 31."""
-    made = [dense.made(seed, 60) for seed in (4, 5, 6)]
-    for s in made:
-        rng = np.random.default_rng(int(s.name[1]))
-        s.rate_dps[:] = rng.normal(size=(60, 3))
-    column = np.clip(np.arange(60) + 1.0 - 31.25, 0, 1)
-    made[1].rate_dps += np.outer(column, [9.0, -9.0, 0.0])
-    return made
+def slow_change(kind, first, length):
+    """(60,) of a ramp, or of what settles, that begins so many blocks from the start."""
+    since = np.arange(60) + 0.5 - first
+    return np.clip(since / length, 0, 1) if kind == "ramp" else -np.expm1(-since.clip(0) / length)
 
 
-def test_the_best_place_is_where_a_step_explains_most_to_a_quarter_of_a_block(stepped):
-    regression = Regression(stepped)
-    place, every = step_places.best_place(regression, [A])
-    assert place.session == 1 and place.at == pytest.approx(31.25)
-    assert [s for s, _, _ in every] == [0, 1, 2] and len(every[0][1]) == 46
-    column = np.clip(np.arange(60) + 1.0 - 31.25, 0, 1)
-    with_it = [
-        replace(s, sources={**s.sources, "s": column * (i == 1)}) for i, s in enumerate(stepped)
-    ]
-    expected = Regression(with_it).gains([A], [(Term("s"),)]).sum()
-    assert place.ratio == pytest.approx(expected, rel=1e-6)
-    whole = (np.arange(60) >= 31) * 1.0
-    with_it[1].sources["s"] = whole
-    at = list(every[1][1]).index(31)
-    assert every[1][2][at] == pytest.approx(
-        Regression(with_it).gains([A], [(Term("s"),)]).sum(), rel=1e-6
-    )
-    assert step_places.best_place(Regression([dense.made(0, 12)]), [A]) == (None, [])
-
-
-def test_a_step_explains_more_than_a_ramp_and_a_ramp_more_than_a_step(stepped):
-    sharp = Regression(stepped)
-    assert step_places.beyond_ramps(sharp, [A], 1, 31.25) > 20
-    slow = [replace(s, rate_dps=s.rate_dps.copy()) for s in stepped]
-    slow[0].rate_dps += np.outer(np.clip((np.arange(60) - 26) / 12, 0, 1), [9.0, -9.0, 9.0])
-    assert step_places.beyond_ramps(Regression(slow), [A], 0, 32.0) < -10
-    ramp = step_places.best_slow(Regression(slow), [A], 0, [28.0, 36.0])
-    assert ramp > 60
-    assert step_places.best_slow(sharp, [A], 0, [28.0, 36.0]) < 25
-    settles = [replace(s, rate_dps=s.rate_dps.copy()) for s in stepped]
-    since = np.maximum(np.arange(60) + 0.5 - 28, 0)
-    settles[0].rate_dps += np.outer(1 - np.exp(-since / 4), [9.0, -9.0, 9.0])
-    found = step_places.best_slow(Regression(settles), [A], 0, [28.0, 32.0])
-    column = [
-        replace(s, sources={**s.sources, "e": (1 - np.exp(-since / 4)) * (i == 0)})
-        for i, s in enumerate(settles)
-    ]
-    expected = Regression(column).gains([A], [(Term("e"),)]).sum()
-    assert 0.999 * expected < found < 1.05 * expected
+@pytest.mark.parametrize("kind", ["ramp", "settles"])
+def test_a_slow_change_explains_as_much_as_the_best_of_all_lengths_and_starts(kind):
+    made = [dense.made(seed, 60) for seed in (4, 5)]
+    made[0].rate_dps[:] += np.outer(slow_change(kind, 28.0, 4.0), [9.0, -9.0, 9.0])
+    told = step_places.best_slow(Regression(made), [A], 0, [28.0, 32.0])
     lengths = 4.0 * np.array([0.5, 0.75, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0])
-    for made in (settles, slow):
-        told, forms = step_places.best_slow(Regression(made), [A], 0, [28.0, 32.0]), []
-        for first, length in product(np.arange(24.0, 32.0, 0.25), lengths):
-            since = np.arange(60) + 0.5 - first
-            forms.append(np.clip(since / length, 0, 1))
-            forms.append(1 - np.exp(-np.maximum(since, 0) / length))
-        for s in made:
-            s.sources.update({f"e{k}": form * (s is made[0]) for k, form in enumerate(forms)})
-        every = [(Term(f"e{k}"),) for k in range(len(forms))]
-        best = Regression(made).gains([A], every).sum(axis=1).max()
-        assert told == pytest.approx(best, rel=1e-6)
+    every = [*product(("ramp", "settles"), np.arange(24.0, 32.0, 0.25), lengths)]
+    for s in made:
+        s.sources |= {f"e{k}": slow_change(*of) * (s is made[0]) for k, of in enumerate(every)}
+    forms = [(Term(f"e{k}"),) for k in range(len(every))]
+    assert told == pytest.approx(Regression(made).gains([A], forms).sum(axis=1).max(), rel=1e-6)
+
+
+@pytest.mark.parametrize(("ramp", "sharper"), [(0.0, (20.0, 1e9)), (12.0, (-1e9, -10.0))])
+def test_a_step_explains_more_than_a_ramp_and_a_ramp_more_than_a_step(ramp, sharper):
+    made = [dense.made(seed, 60) for seed in (4, 5)]
+    for s in made:
+        s.rate_dps[:] = np.random.default_rng(int(s.name[1])).normal(size=(60, 3))
+    change = slow_change("ramp", 32.0 - ramp / 2, max(ramp, 1.0))
+    made[1].rate_dps[:] += np.outer(change, [9.0, -9.0, 9.0])
+    assert sharper[0] < step_places.beyond_ramps(Regression(made), [A], 1, 32.0) < sharper[1]
 
 
 def test_where_the_device_did_not_rest_a_step_may_be_at_either_end():
@@ -776,71 +654,45 @@ def test_a_source_that_hardly_moves_shows_nothing(name, span, moves):
     assert bool(varies(name, sessions)) is moves
 
 
-@pytest.mark.parametrize(
-    ("name", "supply"),
-    [
-        ("vdd_mv", True),
-        ("VBAT", True),
-        *(("Supply 5V", True), ("my_volts", True), ("vcc", True), ("load", False)),
-    ],
-)
-def test_a_supply_is_told_by_its_name(name, supply):
-    assert catalogue.is_supply(name) is supply
-    assert catalogue.extra_channels(warm()) == ("vdd_mv", "load")
-
-
 def of_kind(found, kind):
     return [c for c in found if c.kind == kind]
 
 
 def test_candidates_are_the_rows_of_effects_in_their_places():
     session = warm()
-    found = candidates([session])
-    span = ranges([session])
+    found, span = candidates([session]), ranges([session])
     [bend] = of_kind(found, "temperature-quadratic")
-    assert bend.terms == (Term("temp", 15.0, 35.0, span["temp"][2], power=2),)
-    cubic = of_kind(found, "temperature-cubic")
+    assert bend.terms == (Term("temp", 15.0, 35.0, span["temp"][2], power=2),) and not bend.refine
+    cubic, kinks = (of_kind(found, f"temperature-{kind}") for kind in ("cubic", "kink"))
     assert [c.terms[0].centre for c in cubic] == [span["temp"][2], 20.0, 30.0]
-    assert cubic[0].refine == ("centre",) and bend.refine == ()
-    kinks = of_kind(found, "temperature-kink")
-    at = [
-        20 + 10 * share - span["temp"][2]
-        for share in (0.15, 0.25, 0.35, 0.45, 0.55, 0.65, 0.75, 0.85)
-    ]
-    assert [c.terms[0].knot for c in kinks] == pytest.approx(at) and kinks[0].refine == ("knot",)
-    lag = of_kind(found, "thermal-lag")
-    assert (lag[0].terms[0].lo, lag[0].terms[0].hi) == (15.0, 35.0)  # half of its range further
-    rate = of_kind(found, "thermal-rate")
-    assert (rate[0].terms[0].lo, rate[0].terms[0].hi) == (15.0, 35.0)
-    loop = of_kind(found, "thermal-hysteresis")
-    assert (loop[0].terms[0].lo, loop[0].terms[0].hi) == (15.0, 35.0)
+    at = 20 + 10 * np.arange(0.15, 0.9, 0.1) - span["temp"][2]
+    assert [c.terms[0].knot for c in kinks] == pytest.approx(at)
+    assert (cubic[0].refine, kinks[0].refine) == (("centre",), ("knot",))
     assert not of_kind(found, "temperature-peak")  # it only ever rises here: no memory of anything
-    [drift] = of_kind(found, "time-drift")
+    [drift], decay = of_kind(found, "time-drift"), of_kind(found, "power-on-transient")
     assert drift.terms[0].centre == 0.0 and drift.sources == ["time"]
-    decay = of_kind(found, "power-on-transient")
-    assert len(decay) == 7 and decay[0].sources == [] and decay[0].terms[0].centre == 0.0
-    assert decay[0].terms[0].lo == -np.inf
-    [volts] = of_kind(found, "supply-voltage")
-    assert volts.sources == ["vdd_mv"] and volts.family == "catalogue"
-    product = of_kind(found, "supply-temperature")
-    assert len(product) == 9 and product[0].sources == ["vdd_mv", "temp"]
-    both = {(c.terms[0].centre, c.terms[0].second_centre) for c in product}
-    assert (span["vdd_mv"][0], 30.0) in both and len(both) == 9
-    assert product[0].terms[0].second_lo == 15.0 and product[0].terms[0].second_hi == 35.0
-    [linear] = of_kind(found, "linear-acceleration")
-    assert [t.source for t in linear.terms] == ["acc_x", "acc_y", "acc_z"]
-    [squared] = of_kind(found, "squared-acceleration")
-    lo, hi, _ = span["acc_x"]
-    reach = max(-lo, hi)
-    first = squared.terms[0]
+    assert len(decay) == 7 and decay[0].sources == [] and decay[0].terms[0].lo == -np.inf
+    [volts], [squared] = of_kind(found, "supply-voltage"), of_kind(found, "squared-acceleration")
+    assert volts.sources == ["vdd_mv"] and volts.slots == volts.terms and not volts.is_free
+    both = of_kind(found, "supply-temperature")
+    assert len({(c.terms[0].centre, c.terms[0].second_centre) for c in both}) == len(both) == 9
+    assert (both[0].terms[0].second_lo, both[0].terms[0].second_hi) == (15.0, 35.0)
+    first, reach = squared.terms[0], max(-span["acc_x"][0], span["acc_x"][1])
     assert (first.lo, first.hi, first.centre) == (-reach, reach, 0.0)
     assert not of_kind(found, "vibration") and not of_kind(found, "rate-scale")
-    pairs = {(c.terms[0].source, c.terms[0].second) for c in of_kind(found, "channel-product")}
     # the supply comes before the load, and has the two's product
+    pairs = {(c.terms[0].source, c.terms[0].second) for c in of_kind(found, "channel-product")}
     assert pairs == {("load", "temp"), ("vdd_mv", "temp"), ("vdd_mv", "load")}
-    curve = of_kind(found, "channel-curve")
-    assert {c.family for c in curve} == {"generic"} and all(c.is_free for c in curve)
-    assert len(curve[0].slots) == 1 and len(volts.slots) == 1 and not volts.is_free
+    curves = of_kind(found, "channel-curve")
+    assert {(c.family, c.is_free, len(c.slots)) for c in curves} == {("generic", True, 1)}
+    assert {c.label for c in curves} == {"channel-curve(vdd_mv)", "channel-curve(load)"}
+    assert volts.label == "supply-voltage"
+
+
+@pytest.mark.parametrize("name", ["vdd_mv", "VBAT", "Supply 5V", "my_volts", "vcc"])
+def test_a_supply_is_told_by_its_name(name):
+    assert catalogue.is_supply(name) and not catalogue.is_supply("load")
+    assert catalogue.extra_channels(warm()) == ("vdd_mv", "load")
 
 
 def test_what_does_not_vary_or_was_not_recorded_is_no_candidate():
@@ -860,28 +712,7 @@ def test_what_does_not_vary_or_was_not_recorded_is_no_candidate():
     assert of_kind(shaken, "vibration")
 
 
-def test_a_late_part_adds_the_rate_of_temperature_times_its_slope():
-    session = warm()
-    late = catalogue.late([session])
-    assert [c.terms[0].lag_s for c in late] == [1.0, 8.0]
-    assert all(c.terms[1].second == "temp" and c.sources == ["temp"] for c in late)
-    assert late[0].terms[1].second_centre == pytest.approx(25.0)
-    lags = catalogue.lags([session])
-    assert [t.lag_s for t in lags] == [s for s in (5, 15, 45, 135, 405, 1215) for _ in (1, 2)]
-    assert [t.power for t in lags] == [1, 2] * 6 and lags[1].power_first and not lags[0].power_first
-    assert lags[0].centre == pytest.approx(25.0) and lags[0].lag_mode == "difference"
-    bare = replace(session, sources={})
-    assert catalogue.late([bare]) == [] == catalogue.lags([bare])
-
-
 # --- names ---
-
-
-def test_what_follows_any_channel_is_named_with_it():
-    assert confounding.label(candidate(A, kind="vibration")) == "vibration"
-    assert confounding.label(candidate(A, kind="channel", family="generic")) == "channel(a)"
-    pair = candidate(replace(A, second="b"), kind="channel-product", family="generic")
-    assert confounding.label(pair) == "channel-product(a, b)"
 
 
 @pytest.mark.parametrize(
@@ -895,7 +726,7 @@ def test_what_follows_any_channel_is_named_with_it():
 )
 def test_a_rate_and_a_lag_are_named_by_their_seconds(kind, lag_s, name, mode):
     one = candidate(Term("temp", lag_s=lag_s, lag_mode="rate"), kind=kind)
-    named = confounding.named(one, np.ones((1, 3)))
+    named = naming.named(one, np.ones((1, 3)))
     assert named.kind == name and named.terms[0].lag_mode == mode
 
 
@@ -906,9 +737,9 @@ def test_a_matrix_is_named_by_where_most_of_it_is():
         *((-4.3, "scale-factor"), (4.2, "scale-factor+cross-axis")),
         *((-0.48, "scale-factor+cross-axis"), (0.46, "cross-axis")),
     ):
-        assert confounding.named(rates, diagonal * np.eye(3) + aside).kind == name
+        assert naming.named(rates, diagonal * np.eye(3) + aside).kind == name
     same = candidate(A)
-    assert confounding.named(same, np.ones((1, 3))) is same
+    assert naming.named(same, np.ones((1, 3))) is same
 
 
 def test_groups_alike_share_the_posterior_by_the_levels_of_their_families(sessions):
@@ -921,22 +752,22 @@ def test_groups_alike_share_the_posterior_by_the_levels_of_their_families(sessio
     far = candidate(B, kind="supply-voltage")
     every = [lagged, plain, catalogued, far]
     ratios = regression.gains([], [c.terms for c in every]).sum(axis=1)
-    found = confounding.posterior(regression, [], lagged, every, ratios)
+    found = naming.posterior(regression, [], lagged, every, ratios)
     assert found[0][0] is catalogued and far not in [c for c, _ in found]
-    nats = {confounding.label(c): n for c, n in found}
+    nats = {c.label: n for c, n in found}
     assert nats["vibration"] - nats["channel(twin)"] == pytest.approx(np.log(50), abs=0.1)
     # a group of two places has half the weight where one of them alone fits
     twice = [catalogued, candidate(B, kind="vibration"), plain]
     ratios = regression.gains([], [c.terms for c in twice]).sum(axis=1)
-    again = dict(confounding.posterior(regression, [], plain, twice, ratios))
+    again = dict(naming.posterior(regression, [], plain, twice, ratios))
     assert again[catalogued] - again[plain] == pytest.approx(np.log(25), abs=0.1)
 
 
 def test_a_curve_that_was_drawn_pays_for_its_form():
     curve = Term("a", -4.0, 4.0)
     drawn = candidate(replace(curve, table=tuple(np.linspace(-1, 1, 9) ** 3)))
-    assert confounding._coefficients(drawn) == 3 + len(parts(curve)) - 1
-    assert confounding._coefficients(candidate(A)) == 3
+    assert naming._coefficients(drawn) == 3 + len(parts(curve)) - 1
+    assert naming._coefficients(candidate(A)) == 3
 
 
 def test_the_likeliest_is_named_with_what_else_it_may_be(sessions):
@@ -989,42 +820,15 @@ def test_earth_is_named_beside_what_follows_a_pose_and_is_no_larger(sessions):
 # --- refinement, slots, selections, lines ---
 
 
-def test_a_lag_is_refined_to_where_it_is_likeliest():
-    made = [dense.made(seed, 80) for seed in (1, 2)]
-    for s in made:
-        s.rate_dps[:] = np.random.default_rng(1).normal(size=(80, 3)) * 0.05
-        s.rate_dps += first_order_lag(s.sources["a"], 130.0, 20.0)[:, None]
-    regression = Regression(made)
-    start = candidate(Term("a", lag_s=80.0, lag_mode="lag"), refine=("lag_s",))
-    found = refine.refined(regression, [], start)
-    assert found.terms[0].lag_s == pytest.approx(130.0, rel=0.03)
-    assert len(regression._cache) <= 2  # what was tried is not kept
-    far = candidate(Term("a", lag_s=20.0, lag_mode="lag"), refine=("lag_s",))
-    assert refine.refined(regression, [], far).terms[0].lag_s <= 20.0 * 2.2 * 1.001
-    unmoved = candidate(Term("a", lag_s=80.0, lag_mode="lag"))
-    assert refine.refined(regression, [], unmoved) == unmoved
-
-
-def test_a_knot_and_two_centres_are_refined_within_a_fifth_of_the_range():
-    made = [dense.made(seed, 120) for seed in (1, 2)]
-    for s in made:
-        s.sources["a"] = np.random.default_rng(3).uniform(2, 12, 120)
-        s.sources["b"] = np.random.default_rng(4).uniform(0, 2, 120)
-        s.rate_dps[:] = np.random.default_rng(5).normal(size=(120, 3)) * 0.05
-        s.rate_dps += np.maximum(s.sources["a"] - 8.5, 0)[:, None]
-    kink = candidate(Term("a", 2.0, 12.0, 0.0, knot=7.5), refine=("knot",))
-    found = refine.refined(Regression(made), [], kink)
-    assert found.terms[0].knot == pytest.approx(8.5, abs=0.1)
-    for start in (6.0, 11.0):  # a fifth of the range seen, and no further
-        far = replace(kink, terms=(replace(kink.terms[0], knot=start),))
-        found = refine.refined(Regression(made), [], far).terms[0].knot
-        assert abs(found - start) == pytest.approx(0.2 * 10.0 / (1.0 + 2.0 * MARGIN), abs=0.1)
-    for s in made:
-        s.rate_dps[:] = np.random.default_rng(5).normal(size=(120, 3)) * 0.05
-        s.rate_dps += ((s.sources["a"] - 6.0) * (s.sources["b"] - 1.15))[:, None]
+def test_two_centres_are_refined_within_a_fifth_of_the_range():
+    rng = np.random.default_rng(3)
+    made = dense.made(1, 120)
+    made.sources |= {"a": rng.uniform(2, 12, 120), "b": rng.uniform(0, 2, 120)}
+    product = (made.sources["a"] - 6.0) * (made.sources["b"] - 1.15)
+    made.rate_dps[:] = rng.normal(size=(120, 3)) * 0.05 + product[:, None]
     both = Term("a", 2.0, 12.0, 7.0, second="b", second_lo=0.0, second_hi=2.0, second_centre=1.0)
     start = candidate(both, refine=("centre", "second_centre"))
-    found = refine.refined(Regression(made), [], start).terms[0]
+    found = refine.refined(Regression([made]), [], start).terms[0]
     assert found.centre == pytest.approx(6.0, abs=0.15)
     assert found.second_centre == pytest.approx(1.15, abs=0.03)
 

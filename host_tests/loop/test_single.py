@@ -10,8 +10,8 @@ from zerorate_tools.closing import close, load
 from zerorate_tools.loop.analyse import analyse
 from zerorate_tools.loop.fit.line import less_slope
 from zerorate_tools.loop.fit.single import PiecesByLine, speaks_for
-from zerorate_tools.loop.search.cancels import cancels
 from zerorate_tools.loop.search.curve import ByPieces, powers, smooth_curve
+from zerorate_tools.loop.search.examine import cancels
 from zerorate_tools.loop.search.hysteresis import is_like_hysteresis
 from zerorate_tools.loop.search.select import Search, select
 from zerorate_tools.loop.verify.run_kernels import run_and_prune

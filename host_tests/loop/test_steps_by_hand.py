@@ -14,7 +14,6 @@ from zerorate_tools.loop.search import steps as listed
 from zerorate_tools.loop.search.catalogue import Candidate, lags
 from zerorate_tools.loop.search.steps import (
     Step,
-    column,
     standing,
     steps_and_lags,
 )
@@ -127,38 +126,6 @@ def test_places_near_a_step_of_the_session_say_nothing_of_chance():
     assert listed._away(None, steps, []).tolist() == []
 
 
-def test_sizes_and_deviations_are_those_of_the_sensors_axes_however_they_are_looked_along(sessions):
-    plain, turned = Regression(sessions), Regression(sessions)
-    turned.turn(np.array([[2.0, 1.0, 0.0], [0.0, 1.0, 0.5], [0.0, 0.0, 3.0]]))
-    expected = find_all(plain, [A])
-    covariance = [
-        np.linalg.inv(turned.axes)
-        @ np.diag([u[1 + k, 1 + k] * v for u, v in zip(base.unscaled, base.variance)])
-        @ np.linalg.inv(turned.axes).T
-        for base in [_beside(turned, expected)]
-        for k in range(2)
-    ]
-    found = listed._sized(turned, [A], [replace(s) for s in expected])
-    for step, other, spread in zip(found, expected, covariance):
-        assert step.size_dps == pytest.approx(other.size_dps, abs=1.0)
-        assert step.deviation_dps == pytest.approx(np.sqrt(np.diag(spread)))
-
-
-def _beside(regression, steps):
-    """The fit with the steps as nuisances; they do not stay."""
-    regression.set_events([column(regression, s) for s in steps])
-    base = regression.fit([A]).base
-    regression.set_events([])
-    return base
-
-
-def test_a_step_s_column_is_of_its_session_alone(sessions):
-    step = Step(1, 31, np.zeros(3), 1.0, 1.0, share=0.75)
-    first, second, third = column(Regression(sessions), step)
-    assert not first.any() and not third.any()
-    assert second[:30].max() == 0 and second[30] == 0.75 and second[31:].min() == 1
-
-
 def test_the_weakest_goes_where_not_all_stand_beside_each_other(sessions, monkeypatch):
     asked = []
     stand = lambda regression, terms, steps, *of: asked.append([*steps]) or len(steps) < 2  # noqa: E731
@@ -182,16 +149,6 @@ def test_what_bends_slowly_is_no_abrupt_change():
     assert find_all(Regression([slow]), []) == []
     sharp = stepped(noise(4), (28, 0.0, [20.0, 20.0, -20.0]))
     assert [s.block for s in find_all(Regression([sharp]), [])] == [28]
-
-
-def test_two_of_one_sign_a_few_blocks_apart_stand_together_and_two_that_make_a_ramp_do_not():
-    two = stepped(noise(4), (26, 0.0, [20.0, 20.0, -20.0]), (31, 0.0, [20.0, 20.0, -20.0]))
-    assert [s.block for s in sorted(find_all(Regression([two]), []), key=lambda s: s.block)] == [
-        26,
-        31,
-    ]
-    back = stepped(noise(4), (26, 0.0, [20.0] * 3), (31, 0.0, [-20.0] * 3))
-    assert len(find_all(Regression([back]), [])) == 2
 
 
 @pytest.mark.parametrize(
@@ -275,16 +232,6 @@ def test_what_a_recorded_channel_does_is_no_step():
     assert len(find_all(Regression([unrecorded]), [])) > 0
 
 
-def test_a_kink_over_temperature_is_no_steps():
-    levels = np.repeat([30.0, 20.0, 24.0, 35.0], 15)
-    session = noise(4, temp=levels + np.random.default_rng(0).normal(0, 0.01, BLOCKS))
-    session.rate_dps += np.outer(np.maximum(session.sources["temp"] - 25, 0), [3.0, -3.0, 3.0])
-    regression = Regression([session])
-    for beside in ([], [Term("temp", centre=25.0)]):
-        assert len(listed._all(regression, beside)) == 2
-        assert find_all(regression, beside) == []
-
-
 @pytest.mark.parametrize(
     ("beyond", "gained", "signs", "stands"),
     [
@@ -320,14 +267,6 @@ def test_two_are_the_same_within_two_blocks_of_one_session():
 
 def test_the_level_of_a_step_beside_others_is_lower():
     assert (listed._level(0), listed._level(1), listed._level(3)) == (2e-3, 1e-4, 1e-4)
-
-
-def test_terms_are_shrunk_inside_a_with_alone(sessions):
-    regression = Regression(sessions)
-    free = regression.fit([A]).coefficients
-    with regression.shrinking({A: 1e12}):
-        assert regression.fit([A]).coefficients == pytest.approx(np.zeros((1, 3)), abs=1e-6)
-    assert (regression.fit([A]).coefficients == free).all()
 
 
 COLD = Term("temp", centre=20.0)
@@ -476,13 +415,6 @@ def test_a_step_that_two_blocks_in_turn_show_is_one(monkeypatch, second, sign, l
     assert [s.size_dps.tolist() for s in found] == [[size] * 3 for size in listed]
     assert found[0].block == 30
     assert found[0].deviation_dps == pytest.approx([0.5 if len(listed) == 1 else 0.3] * 3)
-
-
-def test_a_line_and_a_bend_are_beside_steps_where_temperature_varies():
-    assert steps_first.bend_of(noise(4)) == []
-    assert steps_first.bend_of(noise(4, temp=np.full(BLOCKS, 20.0))) == []
-    line, bend = steps_first.bend_of(noise(4, temp=np.arange(60.0)))
-    assert (line, bend) == (Term("temp", centre=29.5), Term("temp", centre=29.5, power=2))
 
 
 def test_errors_of_pieces_are_compared_with_the_best_bend_by_their_geometric_mean():

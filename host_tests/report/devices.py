@@ -6,8 +6,8 @@ from dataclasses import replace
 from zerorate_bench.loop.simulated import simulate
 from zerorate_tools.closing import load
 from zerorate_tools.loop.report.report import as_json, report
+from zerorate_tools.loop.verify.analysis import model_of
 from zerorate_tools.loop.verify.run_kernels import run_kernels
-from zerorate_tools.loop.verify.slots import model_of
 from zerorate_tools.model import write_model
 from zerorate_tools.recordings import Scales, open_recording
 from zerorate_tools.simulate import load_description, simulate_to_files

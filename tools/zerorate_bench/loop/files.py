@@ -165,8 +165,8 @@ def look_at_files(device: Device) -> Outcome:
 
 def _in_motion_mdps(analysis, path: Path, truth) -> float:
     """RMS over the moving samples and the axes of the firmware's error, learning as it goes."""
+    from zerorate_tools.loop.verify.analysis import model_of
     from zerorate_tools.loop.verify.firmware import Firmware
-    from zerorate_tools.loop.verify.slots import model_of
     from zerorate_tools.recordings import open_recording
     from zerorate_tools.replay.samples import frames_in_batches
 

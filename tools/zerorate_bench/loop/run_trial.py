@@ -137,7 +137,6 @@ def _noise_rms(session, noise_dps: np.ndarray) -> float:
 def judged(device: Device, sessions: list, noise_dps: np.ndarray) -> Outcome:
     """What the loop says of sessions. noise_dps: (n, 3) of the last one, nothing else in it."""
     from zerorate_tools.loop.fit.single import PiecesByLine
-    from zerorate_tools.loop.search.confounding import label
     from zerorate_tools.loop.search.select import select
     from zerorate_tools.loop.search.steps_first import remove_steps
     from zerorate_tools.loop.verify.judge import residuals, rms_dps
@@ -152,7 +151,7 @@ def judged(device: Device, sessions: list, noise_dps: np.ndarray) -> Outcome:
     found = selection.found
     return Outcome(
         device,
-        [label(f.candidate) for f in found],
+        [f.candidate.label for f in found],
         [f.candidate.sources for f in found],
         [f.confounded_with for f in found],
         [verdict.confidence(i) for i in range(len(found))],

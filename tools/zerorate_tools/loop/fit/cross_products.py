@@ -29,7 +29,7 @@ class Whitener:
         self.spectrum = noise.spectra(self.n)[noise.FEW if few else slice(None)]
         self.weight = 1.0 / self.spectrum
         self.logdet = np.log(self.spectrum).sum(axis=1)
-        self.coefficients = self.n - 1
+        self.coefficients = int(available.sum()) - 1
 
     def prepare(self, columns: np.ndarray) -> np.ndarray:
         """(n, K) block columns to the (n - 1, K) the products are taken of."""
@@ -61,7 +61,6 @@ class GappyWhitener(Whitener):
 
     def __init__(self, available: np.ndarray, few: bool = False):
         super().__init__(available, few)
-        self.coefficients = int(available.sum()) - 1
         # (n, n - 1) without a mean: what is left of n blocks when their offset is free
         self._keep = noise.transform(np.eye(self.coefficients + 1)).T
         part = noise.transform(np.eye(self.n))[:, available] @ self._keep
@@ -112,10 +111,6 @@ class BridgedWhitener(Whitener):
     """The same for a session with a few blocks missing: bridged by a straight line, in every column
     alike.
     """
-
-    def __init__(self, available: np.ndarray, few: bool = False):
-        super().__init__(available, few)
-        self.coefficients = int(available.sum()) - 1
 
     def prepare(self, columns):
         at, there = np.arange(self.n), np.flatnonzero(self.available)

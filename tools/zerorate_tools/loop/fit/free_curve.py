@@ -16,7 +16,7 @@ from ...model.model import TABLE_POINTS
 from ...model.term import Term
 from ..read.sessions import block_basis
 from .shrunk import shrink
-from .smooth import LENGTHS, matern
+from .smooth import LENGTHS, by_likelihood, matern
 
 #: Share of the variance of a curve that the parts by which it is looked for carry.
 _MOST = 0.9
@@ -68,8 +68,7 @@ def _values(regression, beside, each) -> np.ndarray:
         said = shrink(g.mapped(first, root), regression.scale, columns, own, alike=False)
         told.append(said.nats)
         curves.append(root @ said.coefficients[first : first + root.shape[1]])
-    weight = np.exp(np.array(told) - max(told))
-    return np.tensordot(weight / weight.sum(), curves, 1)
+    return by_likelihood(told, curves)
 
 
 def _products(each, sessions) -> np.ndarray:

@@ -102,7 +102,12 @@ def _deviation(at: np.ndarray, waves: np.ndarray, left: np.ndarray, free: int) -
             likely = -0.5 * np.log(grows).sum() - 0.5 * free * np.log(squares + 1e-300)
             told.append(likely.sum())
             curves.append(root @ v.T @ ((size * d / grows)[:, None] * own))
-    weight = np.exp(np.array(told) - max(told))
+    return by_likelihood(told, curves)
+
+
+def by_likelihood(nats: Sequence[float], curves: Sequence[np.ndarray]) -> np.ndarray:
+    """The mean of curves of one shape by the likelihood of each."""
+    weight = np.exp(np.array(nats) - max(nats))
     return np.tensordot(weight / weight.sum(), curves, 1)
 
 

@@ -6,12 +6,10 @@ from ...model.effects import is_free, of_any_channel
 from ..fit.free_curve import draw
 from ..fit.intervals import block_bootstrap, rms
 from ..fit.single import STEPS_CHOSEN, WEAKER
-from ..search.confounding import label
 from ..search.periodic import QUICK_HZ
-from ..verify.analysis import Analysis
+from ..verify.analysis import Analysis, slots
 from ..verify.courses import AFTER, BEFORE, ONLINE, ONLINE_BEFORE
 from ..verify.judge import residuals, rms_dps
-from ..verify.slots import slots
 from .motion_effects import interference, motion_effects
 from .unexplained import measure_next, not_excluded, what_is_known
 
@@ -150,7 +148,7 @@ def _effects(analysis):
         before, after = so_far[i], so_far[i + 1]
         out.append(
             {
-                "effect": label(f.candidate),
+                "effect": f.candidate.label,
                 "sources": f.candidate.sources,
                 "parameters": _parameters(own),
                 "coefficients": {_name(s, own): list(s.coefficient_dps) for s in own},
@@ -243,7 +241,7 @@ def _event(session, step):
 
 
 def _gate(analysis):
-    kept = {label(f.candidate) for f in analysis.selection.found}
+    kept = {f.candidate.label for f in analysis.selection.found}
     return {
         "faults": analysis.gate.faults,
         "channels_dropped": analysis.gate.dropped,

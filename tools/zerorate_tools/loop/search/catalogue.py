@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 
 from ...model import effects
-from ...model.effects import ANY_CHANNEL, SUPPLY, Effect, table_of
+from ...model.effects import ANY_CHANNEL, SUPPLY, Effect, of_any_channel, table_of
 from ...model.term import Term
 from ..fit.free_curve import is_curve, parts
 from ..motion.columns import LONGEST_S
@@ -52,6 +52,12 @@ class Candidate:
         """Names of the channels it follows."""
         names = [t.source for t in self.terms] + [t.second for t in self.terms if t.second]
         return list(dict.fromkeys(n for n in names if n != "one"))
+
+    @property
+    def label(self) -> str:
+        """The kind, with the channels for forms of any channel."""
+        channels = f"({', '.join(self.sources)})" if of_any_channel(self.kind) else ""
+        return self.kind + channels
 
 
 def ranges(sessions: list[Session]) -> dict[str, tuple[float, float, float]]:

@@ -15,20 +15,19 @@ from ...model.term import Term
 from ..fit.line import less_slope
 from ..fit.regression import Regression
 from ..fit.single import LEAST_OF_A_PIECE, PIECES, PiecesByLine
+from ..fit.smooth import curve_of
 from ..read.sessions import Session
-from .cancels import cancels
 from .catalogue import Candidate, beyond, ranges, varies
 from .decide import LIKELY, Decision, JudgedOnPieces, family_p
-from .fits_in_slots import fits_in_slots
+from .examine import cancels
 from .hysteresis import MEMORIES, is_like_hysteresis
 from .refine import refined
-from .selection import Found
+from .selection import Found, fits_in_slots
 
 KIND, _KINK = "temperature-curve", "temperature-kink"
 #: Powers, of which the curve takes the place; and all forms of a curve.
 _POWERS = ("temperature-quadratic", "temperature-cubic")
 FORMS = (*_POWERS, _KINK)
-_LEAST_BENDS = 2
 
 
 def shows_a_curve(session: Session) -> bool:
@@ -47,15 +46,15 @@ def smooth_curve(sessions: list[Session], line: Sequence[Term], taken: int) -> l
 
     line: over temperature, or nothing.
     """
-    bends = MOST_SLOTS - 1 - taken
-    if not line or bends < _LEAST_BENDS:
+    if not line:
         return []
     lo, hi, _ = ranges(sessions)["temp"]
     ends = beyond(lo, hi, "temp")
     slope = replace(line[0], lo=ends[0], hi=ends[1])
+    bends = max(MOST_SLOTS - 1 - taken, 0)
     at = np.linspace(lo, hi, bends + 2)[1:-1] - slope.centre
     terms = slope, *(replace(slope, knot=float(knot)) for knot in at)
-    return [Candidate(KIND, terms, "catalogue")]
+    return [Candidate(KIND, terms, "catalogue")] if curve_of(terms) else []
 
 
 @dataclass
@@ -137,7 +136,7 @@ class ByPieces:
         straight = less_slope(self.line, beside)
         ratio = float(self.regression.gains([*straight, *beside], [tuple(bends)]).sum())
         p = family_p(ratio, 3 * len(bends), tried)
-        likely = Decision(True, p, ratio, 1.0, np.array([]))
+        likely = Decision(True, p, ratio)
         return Found(c, likely.on_pieces(self.judged.by_passes(), straight, beside, c.terms))
 
 

@@ -1,7 +1,7 @@
 """When a candidate counts as found: several locks, each of which must open."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Protocol
 
 import numpy as np
@@ -48,8 +48,8 @@ class Decision:
     accepted: bool
     p_value: float
     ratio: float
-    inflation: float
-    session_gains: np.ndarray
+    inflation: float = 1.0
+    session_gains: np.ndarray = field(default_factory=lambda: np.zeros(0))
     reason: str = ""
     tried: float = 1.0
 
@@ -84,16 +84,16 @@ def decide(regression, nuisances, candidate, ratio: float, tried: float, pool) -
     """
     dof = 3 * len(candidate.terms)
     level = LEVEL[candidate.family]
-    p, none = family_p(ratio, dof, tried), np.array([])
+    p = family_p(ratio, dof, tried)
     if p > level:
-        return Decision(False, p, ratio, 1.0, none, "not significant")
+        return Decision(False, p, ratio, reason="not significant")
     null = null_ratios(regression, nuisances, candidate.terms, pool)
     p, d = min(1.0, null.survival(ratio, len(candidate.terms)) * tried), null.inflation
     if p > level:
         reason = "no better than irrelevant channels on this noise"
-        return Decision(False, p, ratio, d, none, reason)
+        return Decision(False, p, ratio, d, reason=reason)
     if len(regression.sessions) == 1:
-        return Decision(True, p, ratio, d, none)
+        return Decision(True, p, ratio, d)
     gain = gains(regression, nuisances, candidate.terms)
     enough = bool(gain.sum() > NATS)
     reason = "" if enough else "does not predict the sessions left out"

@@ -16,10 +16,6 @@ from ..fit.left_out import gains
 from .catalogue import Candidate
 from .decide import Decision
 
-#: The chance that anything following time passes on a device with nothing in it, both questions
-#: taken together, with the power-on held out among the others. Noise steeper than a random walk
-#: drifts alike at three power-ons by chance, and hardly at four.
-LEVEL_OF_ALL = RARE**2
 #: By how much the lowest frequencies' share of the noise differs between the axes of one part: the
 #: scale of Student's t of three degrees of freedom, in nats of variance.
 _SPREAD, _DOF = 0.7, 3
@@ -45,8 +41,12 @@ def considered(regression, terms, candidate: Candidate, ratio: float, tried: flo
 
 
 def comes_again(whole, terms, candidate: Candidate, tried: float) -> bool:
-    """Whether it is there by all power-ons together, those held out among them (`whole`)."""
-    return chance(whole, terms, candidate.terms) * tried <= LEVEL_OF_ALL
+    """Whether it is there by all power-ons together, those held out among them (`whole`).
+
+    Noise steeper than a random walk drifts alike at three power-ons by chance, and hardly at four:
+    they must pass the level of the fitted ones squared.
+    """
+    return chance(whole, terms, candidate.terms) * tried <= RARE**2
 
 
 def chance(regression, terms, candidate) -> float:
@@ -121,7 +121,7 @@ def smallest_square(tried: float, axes: int, sessions: int) -> float:
     """Square of the mean of so many sessions in its own variance that passes by them, and with one
     more, where the power-ons' spread is noise."""
     alone = _square(RARE / tried, axes, sessions)
-    held_out = _square(LEVEL_OF_ALL / tried, axes, sessions + 1)
+    held_out = _square(RARE**2 / tried, axes, sessions + 1)
     return max(alone, held_out * sessions / (sessions + 1))
 
 

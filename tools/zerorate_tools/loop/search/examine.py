@@ -5,16 +5,20 @@ from dataclasses import replace
 
 from ...model.term import Term
 from ..fit.common_cause import RARE
-from ..fit.line import less_slope
+from ..fit.line import less_slope, ordinary
+from ..fit.regression import predicted
+from ..read.sessions import Session
 from . import drift_test
-from .cancels import cancels
 from .catalogue import Candidate
-from .confounding import label
 from .decide import Decision, JudgedOnPieces, decide
 from .hysteresis import KIND, is_like_hysteresis, may_show
 from .multiple_testing import MultipleTesting
 from .refine import drawn, refined
 from .selection import Found
+
+#: Of the error without it that an effect may be. Lags of real parts are 0.6 times; what tells a
+#: start's decay from a warm-up by cancelling both is 6 times and more.
+_MOST_TIMES = 2.0
 
 
 class Examiner:
@@ -44,7 +48,7 @@ class Examiner:
         best = refined(self.regression, [*straight, *found], candidate)
         told = drawn(self.regression, [*straight, *found], best)
         decision = self._decision(best, told, straight, found, nuisances)
-        return Found(told, decision) if decision.accepted else (label(best), decision.reason)
+        return Found(told, decision) if decision.accepted else (best.label, decision.reason)
 
     def accepts(
         self,
@@ -90,3 +94,21 @@ class Examiner:
         if reason:
             return replace(decision, accepted=False, reason=reason)
         return decision.on_pieces(judged, *beside, best.terms)
+
+
+def cancels(sessions: Sequence[Session], beside: Sequence[Term], terms: Sequence[Term]) -> bool:
+    """Whether terms are far larger than the error that they explain: then they only stand against
+    others, as a start's decay against a warm-up, and not at another power-on."""
+    without = _squares(sessions, beside, ordinary(beside, sessions) if beside else (), True)
+    fitted = ordinary([*beside, *terms], sessions)[len(beside) :]
+    return _squares(sessions, terms, fitted, False) > _MOST_TIMES**2 * without
+
+
+def _squares(sessions, terms, coefficients, left: bool) -> float:
+    """Of what terms add to the bias, or leave of it, offsets aside, in all."""
+    total = 0.0
+    for s in sessions:
+        added = predicted(terms, coefficients, s)
+        values = s.rate_dps - added if left else added
+        total += float((s.less_offsets(values, s.available)[s.available] ** 2).sum())
+    return total

@@ -22,8 +22,7 @@ from ..fit.single import PiecesByLine, pass_of, speaks_for
 from ..read.sessions import Session, block_basis
 from .catalogue import Candidate, varies
 from .decide import LEVEL, Decision, JudgedOnPieces, family_p
-from .fits_in_slots import fits_in_slots
-from .selection import Found
+from .selection import Found, fits_in_slots
 
 KIND = "thermal-hysteresis"
 #: Of one width, or what else a few power-ons take a sum of many widths for.
@@ -124,7 +123,7 @@ def of_one_recording(
     nats = judged(straight, (), whole)
     if not speaks_for(nats):
         return None, judged.reason
-    decision = Decision(True, p, ratio, 1.0, nats)
+    decision = Decision(True, p, ratio, session_gains=nats)
     return Found(Candidate(KIND, whole, "catalogue"), decision), ""
 
 

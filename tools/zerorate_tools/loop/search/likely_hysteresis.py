@@ -19,9 +19,8 @@ from ..fit.shrunk import evidence
 from ..read.sessions import Session
 from .catalogue import Candidate
 from .decide import Decision
-from .fits_in_slots import fits_in_slots
 from .hysteresis import AS_WELL, BETTER, KIND, MOST_OPERATORS, SIMPLER, may_show
-from .selection import Found
+from .selection import Found, fits_in_slots
 
 #: Radii of the finest operator, as shares of the range of temperature, and how many times as wide
 #: each is as the last.
@@ -64,9 +63,7 @@ def of_a_pair(
         return None, "not significant"
     # the chance that noise makes one of the forms so likely is less (Markov's inequality)
     p = min(1.0, 2 * len(_FINEST) * float(np.exp(-nats)))
-    return Found(
-        candidate, Decision(True, p, 2 * nats, 1.0, np.array([])), {rival: most - nats}
-    ), ""
+    return Found(candidate, Decision(True, p, 2 * nats), {rival: most - nats}), ""
 
 
 def _forms(sessions: Sequence[Session]) -> Iterator[tuple[Term, ...]]:

@@ -1,17 +1,24 @@
 """The name of every effect found, and the posterior of what may stand in its place."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
+from scipy.special import logsumexp
 
+from ...model.effects import is_free
 from ...model.term import Term
+from ..fit.free_curve import parts
 from ..fit.line import is_slope
 from ..fit.regression import Regression, predicted
 from ..read.earth import ROTATION, can_be_earth
-from . import confounding
 from .catalogue import Candidate
+from .decide import LEVEL
+from .refine import drawn, refined
 from .selection import Found
 
+#: Nats behind the likeliest beyond which a group is not refined: its grid is coarse.
+_WORTH_REFINING = 15.0
 _OF_POSE = ("linear-acceleration", "squared-acceleration")
 
 
@@ -35,19 +42,19 @@ def name_found(
         rest = [*straight, *others]
         some = [c for c in pool if c.family == "catalogue"] if i < bends else pool
         ratios = regression.gains(rest, [c.terms for c in some]).sum(axis=1)
-        near = confounding.posterior(regression, rest, f.candidate, some, ratios)
+        near = posterior(regression, rest, f.candidate, some, ratios)
         own = f.candidate
         best, nats = next((c, n) for c, n in near if c is own or (i >= bends and passes(c, others)))
         f.candidate = _named(regression, rest, best)
-        called, beside = confounding.label(f.candidate), dict(f.rivals)
+        called, beside = f.candidate.label, dict(f.rivals)
         for c, n in near:
-            beside.setdefault(confounding.label(_named(regression, rest, c)), n - nats)
+            beside.setdefault(_named(regression, rest, c).label, n - nats)
         f.rivals = {name: n for name, n in beside.items() if name != called}
 
 
 def _named(regression, rest, candidate):
     fit = regression.fit([*rest, *candidate.terms])
-    return confounding.named(candidate, fit.coefficients[len(rest) :])
+    return named(candidate, fit.coefficients[len(rest) :])
 
 
 def name_earth(found: list, terms: list, coefficients: np.ndarray, sessions: list) -> None:
@@ -64,3 +71,53 @@ def name_earth(found: list, terms: list, coefficients: np.ndarray, sessions: lis
             effect = [predicted(f.candidate.terms, rows, s)[s.available] for s in sessions]
             if can_be_earth(np.vstack(effect), unknown):
                 f.rivals[ROTATION] = 0.0  # it turns with the pose alike
+
+
+def posterior(regression, terms, chosen, candidates, ratios) -> list[tuple[Candidate, float]]:
+    """Every group that may stand in the chosen one's place, its best candidate refined, and the
+    nats of its posterior; the likeliest first.
+
+    A group's likelihood is the mean over its grid, whose best point is refined. Its prior odds are
+    the level of its family, and every coefficient costs a nat (Akaike): a group of many fits more.
+    ratios: (K,) of the candidates beside the same terms.
+    """
+    groups: dict[str, list[int]] = {chosen.label: []}
+    for i in np.argsort(-ratios):
+        groups.setdefault(candidates[i].label, []).append(int(i))
+    least = regression.gains(terms, [chosen.terms]).sum() - 2 * _WORTH_REFINING
+    out = []
+    for name, grid in groups.items():
+        if name == chosen.label:
+            best = chosen
+        elif ratios[grid[0]] > least:
+            best = drawn(regression, terms, refined(regression, terms, candidates[grid[0]]))
+        else:
+            continue
+        top = regression.gains(terms, [best.terms]).sum()
+        mean = logsumexp(np.r_[top, ratios[grid[1:]]] / 2) - np.log(max(len(grid), 1))
+        out.append((best, float(mean - _coefficients(best) + np.log(LEVEL[best.family]))))
+    return sorted(out, key=lambda pair: -pair[1])
+
+
+def _coefficients(c: Candidate) -> int:
+    """Fitted numbers: three a slot, and the form of a curve that was drawn."""
+    form = len(parts(c.terms[0])) - 1 if is_free(c.terms[0]) else 0
+    return 3 * len(c.terms) + form
+
+
+def named(c: Candidate, coefficients: np.ndarray) -> Candidate:
+    """The candidate under the name that its refined parameters and (terms, 3) coefficients deserve.
+
+    Rate and lag of temperature are one basis: below a time constant of 50 s it is called a rate. A
+    matrix on the rates is a scale factor where its diagonal holds most of it.
+    """
+    if c.kind in ("thermal-rate", "thermal-lag"):
+        slow = c.terms[0].lag_s > 50.0
+        mode, kind = ("difference", "thermal-lag") if slow else ("rate", "thermal-rate")
+        return replace(c, kind=kind, terms=(replace(c.terms[0], lag_mode=mode),))
+    if c.kind == "rate-scale":
+        diagonal = (np.diag(coefficients) ** 2).sum()
+        share = diagonal / (coefficients**2).sum()
+        kinds = ("cross-axis", "scale-factor+cross-axis", "scale-factor")
+        return replace(c, kind=kinds[int(share >= 0.1) + int(share > 0.9)])
+    return c

@@ -12,19 +12,17 @@ from ..fit.line import less_slope
 from ..fit.regression import Regression
 from ..fit.shrunk import evidence, has_play_operators
 from ..read.sessions import Session
-from . import confounding, curve, hysteresis
+from . import curve, hysteresis
 from .catalogue import Candidate, ranges
 from .catalogue import candidates as all_candidates
 from .decide import JudgedOnPieces
-from .detectable import smallest_dps
 from .drift_test import follows_time
 from .examine import Examiner
-from .fits_in_slots import fits_in_slots
 from .likely_hysteresis import likeliest, of_a_pair
-from .multiple_testing import MultipleTesting
+from .multiple_testing import MultipleTesting, smallest_dps
 from .naming import name_found
 from .refine import drawn, refined
-from .selection import Found, Selection
+from .selection import Found, Selection, fits_in_slots
 
 #: Kinds of effect that are tried at a time: the best four by their likelihood.
 _KINDS_TRIED = 4
@@ -215,7 +213,7 @@ class Search:
             if (
                 c.kind in kinds
                 or len(kinds) >= _KINDS_TRIED
-                or confounding.label(c) in self.dropped
+                or c.label in self.dropped
                 or not fits_in_slots([*self.terms(), *c.slots], self.taken)
             ):
                 continue
@@ -259,8 +257,8 @@ class Search:
             c = self.found[i].candidate
             rest = [*self.straight, *self.terms(leave=i)]
             if self.examiner.is_idle(c, rest):
-                self.refused.append((confounding.label(c), "explained by effects found later"))
-                self.dropped.add(confounding.label(c))
+                self.refused.append((c.label, "explained by effects found later"))
+                self.dropped.add(c.label)
                 del self.found[i]
             else:
                 self.found[i].candidate = drawn(

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.special import softmax
 
+from ...model.model import MOST_CHANNELS, MOST_PLAYS, MOST_RINGS, MOST_SLOTS, MOST_TABLES
 from ...model.term import Term
 from ..fit.line import less_slope
 from ..fit.noise import NATS
 from ..fit.regression import Regression
+from ..read.sessions import OWN_SOURCES
 from .catalogue import Candidate
-from .confounding import label
 from .decide import Decision
 
 
@@ -32,7 +33,7 @@ class Found:
     def probabilities(self) -> dict[str, float]:
         """The chance that it is itself, or each of what may stand in its place, by name, the
         likeliest first; chances below one in twenty are left out."""
-        nats = {label(self.candidate): 0.0, **self.rivals}
+        nats = {self.candidate.label: 0.0, **self.rivals}
         names = sorted(nats, key=lambda name: -nats[name])
         chances = softmax([nats[name] for name in names])
         return {name: float(p) for name, p in zip(names, chances) if p > np.exp(-NATS)}
@@ -40,7 +41,7 @@ class Found:
     @property
     def confounded_with(self) -> list[str]:
         """What else it may be."""
-        return [name for name in self.probabilities if name != label(self.candidate)]
+        return [name for name in self.probabilities if name != self.candidate.label]
 
     def without_axes(self, axes: Iterable[bool]) -> Found:
         """The same without what it corrects on some axes, (3,) bool."""
@@ -82,7 +83,7 @@ class Selection:
         """The same with an effect taken from some axes, and withdrawn where none is left."""
         less = self.found[effect].without_axes(axes)
         if not any(less.axes):
-            said = (label(less.candidate), reason)
+            said = (less.candidate.label, reason)
             return replace(self.without(effect), withdrawn=[*self.withdrawn, said])
         found = [less if i == effect else f for i, f in enumerate(self.found)]
         return replace(self, found=found)
@@ -102,3 +103,21 @@ class Selection:
     def terms(self) -> list[Term]:
         """Slots of every found effect, in the order found."""
         return [t for f in self.found for t in f.candidate.terms]
+
+
+def fits_in_slots(terms: Sequence[Term], taken: int = 0) -> bool:
+    """Whether the firmware has room for terms, a slot each, beside slots that motion needs.
+
+    A play operator and its square have a place of their own.
+    """
+    channels = {n for t in terms for n in (t.source, t.second) if n and n not in OWN_SOURCES}
+    delays = sum(t.delay_s > 0 for t in terms)
+    plays = {replace(t, power=1) for t in terms if t.memory == "play"}
+    slots = sum(t.memory != "play" for t in terms) + taken
+    return (
+        slots <= MOST_SLOTS
+        and len(plays) <= MOST_PLAYS
+        and delays <= MOST_RINGS
+        and sum(t.table is not None for t in terms) <= MOST_TABLES
+        and len(channels) <= MOST_CHANNELS
+    )

@@ -18,9 +18,10 @@ _WAKES = 10
 #: Quarters of a block at which a step is looked for around the best place.
 _QUARTERS = np.arange(-3, 4) / 4
 #: Blocks from the middle of a ramp to either end, and shares of them that it is off the place.
-LONGEST = 8.0
+_RAMPS, _OFF = np.array([2.0, 4.0, 8.0]), np.array([-0.5, 0.0, 0.5])
+LONGEST = float(_RAMPS.max())
+#: Lengths of a slow change, of what two steps are apart.
 _OF_SPAN = np.array([0.5, 0.75, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0])
-_RAMPS, _OFF = np.array([2.0, 4.0, LONGEST]), np.array([-0.5, 0.0, 0.5])
 
 
 @dataclass
@@ -61,67 +62,72 @@ def _around(session, at: float) -> np.ndarray:
     return np.unique(np.add.outer([at, *ends], _QUARTERS))
 
 
+class _Beside:
+    """Likelihood ratios of columns beside the terms and the events that the regression has."""
+
+    def __init__(self, regression, terms) -> None:
+        self._regression, self._z = regression, regression.stack(terms)
+        self._products = regression.cross_products(terms)
+        self._base = fit_base(self._products, regression.scale)
+
+    def ratios(self, s: int, columns: np.ndarray) -> np.ndarray:
+        """(K,) of (blocks, K) columns of one session, over all axes."""
+        r, whitener = self._regression, self._regression.whiteners[s]
+        axes = r.y[s].shape[1]
+        fixed = np.hstack([r.y[s], self._z[s]])
+        _, cross, xx = whitener.products(fixed, whitener.prepare(columns))
+        cross = cross[:, :, None]
+        own = np.arange(len(r.sessions)) == s
+        parts = {"xy": cross[..., :axes], "xz": cross[..., axes:], "xx": xx}
+        of_all = {name: np.multiply.outer(own, part) for name, part in parts.items()}
+        return ratios(replace(self._products, **of_all), self._base, r.scale).sum(axis=1)
+
+
 def beyond_ramps(regression, terms, session: int, at: float) -> float:
     """By how much a step explains more than the best ramp of some blocks around it, as twice a
     gain in log likelihood."""
-    products = regression.cross_products(terms)
-    base = fit_base(products, regression.scale)
-    blocks = np.arange(regression.sessions[session].blocks)[:, None] + 0.5
+    own = regression.sessions[session]
+    blocks = np.arange(own.blocks)[:, None] + 0.5
     half = np.repeat(_RAMPS, len(_OFF))
     ramps = np.clip((blocks - at - half * np.tile(_OFF, len(_RAMPS))) / (2 * half) + 0.5, 0.0, 1.0)
-    steps = heavisides(regression.sessions[session], _around(regression.sessions[session], at))
-    columns = np.hstack([steps, ramps])
-    found = _ratios(regression, products, base, regression.stack(terms), session, columns)
+    steps = heavisides(own, _around(own, at))
+    found = _Beside(regression, terms).ratios(session, np.hstack([steps, ramps]))
     return float(found[: steps.shape[1]].max() - found[steps.shape[1] :].max())
 
 
 def best_slow(regression, terms, session: int, at: list[float]) -> float:
     """What the best slow change around some places explains: a ramp or an exponential, of lengths
     about theirs, as twice a gain in log likelihood."""
-    products = regression.cross_products(terms)
-    base = fit_base(products, regression.scale)
     span = max(at) - min(at)
     first = np.arange(min(at) - span, max(at), 0.25)
     since = np.arange(regression.sessions[session].blocks)[:, None] + 0.5 - first
     columns = [np.clip(since / (share * span), 0.0, 1.0) for share in _OF_SPAN]
     columns += [-np.expm1(-np.maximum(since, 0.0) / (share * span)) for share in _OF_SPAN]
-    z = regression.stack(terms)
-    return float(_ratios(regression, products, base, z, session, np.hstack(columns)).max())
+    return float(_Beside(regression, terms).ratios(session, np.hstack(columns)).max())
 
 
 def best_place(regression, terms) -> tuple[Place | None, list]:
     """Where a step explains most beside the terms and the events that the regression has, and
     (session, places, ratios) of every session."""
-    products = regression.cross_products(terms)
-    base = fit_base(products, regression.scale)
-    z = regression.stack(terms)
+    beside = _Beside(regression, terms)
+
+    def best_of(s: int, at: np.ndarray) -> tuple[Place, np.ndarray]:
+        found = beside.ratios(s, heavisides(regression.sessions[s], at))
+        return Place(s, float(at[found.argmax()]), float(found.max())), found
+
     best, every = None, []
     for s, session in enumerate(regression.sessions):
         at = _ground(session)
         if not len(at):
             continue
-        found = _ratios(regression, products, base, z, s, heavisides(session, at))
+        place, found = best_of(s, at)
         every.append((s, at, found))
-        if best is None or found.max() > best.ratio:
-            best = Place(s, float(at[found.argmax()]), float(found.max()))
+        if best is None or place.ratio > best.ratio:
+            best = place
     if best:
         at = _around(regression.sessions[best.session], best.at)
-        columns = heavisides(regression.sessions[best.session], at)
-        found = _ratios(regression, products, base, z, best.session, columns)
-        best = Place(best.session, float(at[found.argmax()]), float(found.max()))
+        best, _ = best_of(best.session, at)
     return best, every
-
-
-def _ratios(regression, products, base, z, s, columns) -> np.ndarray:
-    """(places,) likelihood ratios of columns of one session's blocks, over all axes."""
-    y, columns = regression.y[s], regression.whiteners[s].prepare(columns)
-    cross, alone = regression.whiteners[s].products(np.hstack([y, z[s]]), columns, 1)[1:]
-    cross = cross[:, :, None]
-    own = np.arange(len(regression.sessions)) == s
-    axes = y.shape[1]
-    xy, xz, xx = (np.multiply.outer(own, p) for p in (cross[..., :axes], cross[..., axes:], alone))
-    beside = replace(products, xy=xy, xz=xz, xx=xx)
-    return ratios(beside, base, regression.scale).sum(axis=1)
 
 
 def tried(session) -> int:

@@ -22,7 +22,9 @@ from .step_places import EDGE, LONGEST, best_place, best_slow, beyond_ramps, hea
 
 MOST_PER_SESSION = 4
 _AWAY = 15  # blocks from a step at which a step beside it no longer shows it
-_SAME = 2  # blocks that the place of a step may move by when other terms stand beside it
+#: Blocks by which the place of a step may be off, or move when other terms stand beside it; and
+#: between two that undo each other up to which they are a disturbance.
+NEAR = 2
 #: Blocks without rest across which no change is abrupt, if the temperature moved by more in them.
 _UNSEEN, _UNSEEN_DEGC = 3, 1.0
 #: Level of every step but the surest of one search: recordings with several are the rarer.
@@ -103,7 +105,7 @@ def steps_and_lags(regression, terms, recordings: int = 1) -> tuple[list[Step], 
 
 def _is_same(a: Step, b: Step) -> bool:
     """Whether two are the same one, found beside other terms."""
-    return a.session == b.session and abs(a.block - b.block) <= _SAME
+    return a.session == b.session and abs(a.block - b.block) <= NEAR
 
 
 def _shrunk_lags(regression, terms) -> dict[Term, float]:

@@ -14,14 +14,11 @@ from ...model.term import Term
 from ..fit.common_cause import RARE
 from ..fit.regression import Regression
 from ..read.sessions import Session
-from .steps import MOST_PER_SESSION, Step, standing, steps_and_lags
+from .steps import MOST_PER_SESSION, NEAR, Step, standing, steps_and_lags
 
 #: Ticks around a moment in which the accelerometer is looked at; what it must see, in g and in
 #: times its usual change.
 _MOMENT, _SEEN_G, _SEEN = 10, 0.02, 6.0
-#: Blocks before and after a step in which its second is looked for, and as many rests beyond them;
-#: and between two that undo each other up to which they are a disturbance.
-_NEAR = 2
 
 
 def remove_steps(sessions: Sequence[Session]) -> list[Session]:
@@ -120,9 +117,9 @@ def _parting(along: np.ndarray, block: int, per: int) -> int:
     """The tick near a block at which a step of one, beside a line, leaves least of the ticks there:
     what temperature makes of them moves no step."""
     there = np.flatnonzero(np.isfinite(along))
-    places = np.arange(max((block - _NEAR) * per + 1, 1), min((block + _NEAR) * per, len(along)))
-    first, last = np.searchsorted(there, [(block - _NEAR) * per, (block + _NEAR) * per])
-    near = there[max(first - _NEAR * per, 0) : last + _NEAR * per]
+    places = np.arange(max((block - NEAR) * per + 1, 1), min((block + NEAR) * per, len(along)))
+    first, last = np.searchsorted(there, [(block - NEAR) * per, (block + NEAR) * per])
+    near = there[max(first - NEAR * per, 0) : last + NEAR * per]
     line = np.linalg.qr(np.column_stack([np.ones(len(near)), near - near.mean()]))[0]
     left = along[near][:, None] - (near[:, None] >= places)
     left -= line @ (line.T @ left)
@@ -162,7 +159,7 @@ def hold_disturbed(regression, terms, recordings: int = 1) -> None:
 def _undoes(a: Step, b: Step) -> bool:
     apart = (b.block - b.share) - (a.block - a.share)
     undone = a.size_dps @ b.size_dps < 0
-    return bool(a.session == b.session and apart <= _NEAR and undone)
+    return bool(a.session == b.session and apart <= NEAR and undone)
 
 
 def _hold(regression, a: Step, b: Step) -> None:

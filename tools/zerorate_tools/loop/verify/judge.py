@@ -170,6 +170,6 @@ def _gains(whole: Regression, selection: Selection, trained: int) -> np.ndarray:
     with_all = misfit(every)
     out = []
     for i in range(len(selection.found)):
-        rest = [t for j, f in enumerate(selection.found) if j != i for t in f.candidate.terms]
-        out.append(0.5 * (misfit([*selection.straight, *rest]) - with_all))
+        rest = [*selection.straight, *selection.without(i).terms]
+        out.append(0.5 * (misfit(rest) - with_all))
     return np.array(out)

@@ -15,7 +15,6 @@ from dataclasses import replace
 import numpy as np
 
 from ..read.sessions import Session
-from ..search.confounding import label
 from ..search.drift_test import comes_again, follows_time
 from ..search.selection import Selection
 from .judge import Judgement, judge, residuals, rms_dps
@@ -38,7 +37,7 @@ def prune_by_holdout(selection: Selection, holdout: list[Session]) -> tuple[Sele
             continue
         without = judge(less, holdout)
         if reason is AGAIN or without.after_rms <= judgement.after_rms:
-            said = (label(selection.found[i].candidate), _said(reason, judgement, without))
+            said = (selection.found[i].candidate.label, _said(reason, judgement, without))
             return prune_by_holdout(replace(less, withdrawn=[*less.withdrawn, said]), holdout)
     some = [*map(selection.first, range(len(selection.found))), selection]
     after = [_left(one, holdout) for one in some]

@@ -22,7 +22,7 @@ from ..motion.scales_and_timing import slots_of
 from ..read.gate import GateReport
 from ..read.ticks import has_one_sample
 from ..search.selection import Selection
-from .analysis import Analysis
+from .analysis import Analysis, deployable, model_of, with_selection
 from .by_kernels import PiecesByKernels
 from .courses import (
     AFTER,
@@ -38,7 +38,6 @@ from .firmware import Firmware
 from .judge import Judgement, rms_dps
 from .power_on import BlockMeans, PowerOn, ideal_dps
 from .prune_by_holdout import without_harmful
-from .slots import deployable, model_of, with_selection
 
 _AXES = ("gx", "gy", "gz")
 WAYS = ("before", "after", "online")
