@@ -7,12 +7,12 @@ import pytest
 from scipy.stats import chi2
 from zerorate_tools.loop.fit import shrunk as shrinking
 from zerorate_tools.loop.fit.common_cause import coherence, turned_axes
-from zerorate_tools.loop.fit.cross_products import GappyWhitener, Whitener, cross_products, whitener
+from zerorate_tools.loop.fit.cross_products import GappyWhitener, cross_products, whitener
 from zerorate_tools.loop.fit.left_out import fitted_without, gains, of_plays, session_misfit
-from zerorate_tools.loop.fit.likelihood import fit_base, ratios, session_scale
+from zerorate_tools.loop.fit.likelihood import session_scale
 from zerorate_tools.loop.fit.regression import Regression, predicted
 from zerorate_tools.loop.search.steps import Step
-from zerorate_tools.model.term import Term
+from zerorate_tools.model.term import Term, play
 
 from . import dense
 from .dense import A, B, C, D
@@ -73,22 +73,6 @@ def test_two_columns_all_but_alike_gain_what_one_of_them_does(regression, sessio
         s.sources["twin"] = s.sources["c"] * (1 + 1e-9)
     one, both = regression.gains([A], [(C,), (C, Term("twin"))])
     assert both == pytest.approx(one, rel=1e-3, abs=1e-6)
-
-
-def test_a_session_twice_as_noisy_weighs_a_quarter():
-    quiet = [dense.made(seed, 400) for seed in (1, 2, 3)]
-    loud = [*quiet[:2], replace(quiet[2], rate_dps=4 * quiet[2].rate_dps)]
-    for s in loud:  # noise alone, so that no walk differs between them
-        s.rate_dps[:] = np.random.default_rng(s.blocks + int(s.name[1])).normal(size=(400, 3))
-    loud[2].rate_dps *= 4
-    scale = session_scale(Regression(loud).cross_products([A]))
-    assert np.log(scale).sum(axis=0) == pytest.approx(np.zeros(3), abs=0.2)
-    assert scale[2] / scale[0] == pytest.approx([4, 4, 4], rel=0.12)
-    alike = [dense.made(seed, 400) for seed in (1, 2, 3)]
-    for s in alike:
-        s.rate_dps[:] = np.random.default_rng(int(s.name[1])).normal(size=(400, 3))
-    assert (session_scale(Regression(alike).cross_products([A])) == 1).all()
-    assert (session_scale(Regression(loud[:1]).cross_products([A])) == 1).all()
 
 
 @pytest.mark.parametrize("few", [False, True])
@@ -216,24 +200,6 @@ def test_squares_of_acceleration_are_shrunk_by_a_thousandth_and_told_weights_by_
     assert tried.xx[:, :, 0] == pytest.approx(more.zz)
 
 
-def test_outlying_blocks_are_held_at_their_neighbours(sessions):
-    calm = dense.made(7, 200)
-    calm.rate_dps[:] = np.random.default_rng(7).normal(size=(200, 3))
-    calm.rate_dps += 3.0 * calm.sources["a"][:, None]
-    wild = replace(calm, rate_dps=calm.rate_dps.copy())
-    wild.rate_dps[[20, 150], [0, 2]] += 40.0
-    regression = Regression([wild])
-    regression.settle([A])
-    assert regression.outliers == 2
-    apart = regression.rate[0] - calm.rate_dps
-    assert np.abs(apart).max() < 4 and (np.abs(apart) > 0).sum() == 2
-    assert regression.fit([A]).coefficients == pytest.approx(np.full((1, 3), 3.0), abs=0.1)
-    few = Regression([dense.made(8, 12, gap=range(2, 8))])
-    few.rate[0][0] = 1e6
-    few.settle([A])
-    assert few.outliers == 0
-
-
 def test_a_session_left_out_is_predicted_by_the_others_alone(regression, sessions):
     found = gains(regression, [A], [B])
     full = regression.fit([A, B]).base
@@ -259,73 +225,47 @@ def test_a_session_left_out_is_predicted_by_the_others_alone(regression, session
         assert found[s] == pytest.approx(0.5 * (lost[0] - lost[1]), rel=1e-4, abs=1e-7)
 
 
-PLAYS = [
-    replace(A, memory="play", width=1.0),
-    replace(A, memory="play", width=2.5),
-    replace(A, memory="play", width=1.0, power=2),
-]
+PLAYS = {
+    "p": replace(A, memory="play", width=1.0),
+    "q": replace(A, memory="play", width=2.5),
+    "r": replace(A, memory="play", width=1.0, power=2),
+}
+WHOLE = [1e-3, *(10.0**e for e in np.arange(-1, 4.1, 0.5))]
+ALONE = [(size,) for size in WHOLE]
+WITH_SQUARES = dense.products_of(WHOLE, [(1e-3, 0.1, 0.3, 1.0)])
 
 
 def played(session):
     """The session with what the play operators make of its source as sources of their own."""
-    from zerorate_tools.model.term import play
-
-    a = session.sources["a"]
-    made = {"p": play(a, 1.0), "q": play(a, 2.5), "r": play(a, 1.0) ** 2}
+    made = {n: play(session.sources["a"], t.width) ** t.power for n, t in PLAYS.items()}
     return replace(session, sources={**session.sources, **made})
 
 
-def test_weights_of_play_operators_are_the_mean_of_their_distribution():
-    sessions = [dense.made(11, 16), dense.made(12, 22, gap=range(6, 15))]
-    both = [played(s) for s in sessions]
-    regression = Regression(sessions, few=True)
-    few = [s for s in dense.SHAPES if is_of_the_few(s)]
-    p = dense.problem(both, [B, Term("p"), Term("q")], shapes_=few)
-    sizes = [(1e-3,), *((10.0**e,) for e in np.arange(-1, 4.1, 0.5))]
-    for alike in (True, False):
-        nats, mean = dense.shrunk(p, [[1, 2]], sizes, alike)
-        told = shrinking.shrink(
-            regression.cross_products([B, *PLAYS[:2]]),
-            regression.scale,
-            [B, *PLAYS[:2]],
-            alike=alike,
-        )
-        assert told.coefficients == pytest.approx(mean, rel=1e-4, abs=1e-7)
-        assert told.nats == pytest.approx(nats, abs=1e-5)
-
-
-def test_squares_of_play_operators_have_a_size_of_their_own_under_all_colours():
-    sessions = [dense.made(13, 20)]
-    both = [played(s) for s in sessions]
-    p = dense.problem(both, [B, Term("p"), Term("r"), Term("q")])
-    every = [B, PLAYS[0], PLAYS[2], PLAYS[1]]
-    sizes = dense.products_of(
-        [1e-3, *(10.0**e for e in np.arange(-1, 4.1, 0.5))], [(1e-3, 0.1, 0.3, 1.0)]
-    )
-    regression = Regression(sessions)
-    nats, mean = dense.shrunk(p, [[1, 3], [2]], sizes)
-    g = regression.cross_products(every)
-    told = shrinking.shrink(g, regression.scale, every)
+@pytest.mark.parametrize(
+    ("names", "groups", "sizes", "few", "how"),
+    [
+        ("bpq", [[1, 2]], ALONE, True, {}),
+        ("bpq", [[1, 2]], ALONE, True, {"alike": False}),
+        ("bprq", [[1, 3], [2]], WITH_SQUARES, False, {}),  # squares have a size of their own
+        ("pr", [[0], [1]], WITH_SQUARES, True, {}),  # with nothing beside them
+        ("dbc", [[1, 2]], ALONE, False, {"own": slice(1, 3), "alike": False}),
+    ],
+)
+def test_weights_are_the_mean_of_their_distribution(names, groups, sizes, few, how):
+    sessions = [dense.made(11, 14), dense.made(12, 18, gap=range(6, 12))]
+    shapes = [s for s in dense.SHAPES if is_of_the_few(s)] if few else dense.SHAPES
+    p = dense.problem([*map(played, sessions)], [Term(n) for n in names], shapes_=shapes)
+    nats, mean = dense.shrunk(p, groups, sizes, **{"alike": how.get("alike", True)})
+    terms, regression = [PLAYS.get(n, Term(n)) for n in names], Regression(sessions, few=few)
+    g = regression.cross_products(terms)
+    told = shrinking.shrink(g, regression.scale, terms, **how)
     assert told.coefficients == pytest.approx(mean, rel=1e-4, abs=1e-7)
     assert told.nats == pytest.approx(nats, abs=1e-5)
-    assert (told.precision[:, 0] == 0).all() and (told.precision[:, 1:] > 0).all()
-    assert (of_plays(g, regression.scale, every) == told.precision).all()
-    assert (of_plays(g, regression.scale, [B, B, B, B]) == 0).all()
-    assert shrinking.evidence(regression, [B], every[1:]) == pytest.approx(nats, abs=1e-5)
-
-
-def test_other_terms_are_shrunk_where_they_are_named(regression, sessions):
-    p = dense.problem(sessions, [A, B, C], SCALE[:, 0])
-    alone = Regression(sessions)
-    alone.scale = np.repeat(SCALE[:, :1], 3, axis=1)
-    sizes = [(1e-3,), *((10.0**e,) for e in np.arange(-1, 4.1, 0.5))]
-    nats, mean = dense.shrunk(p, [[1, 2]], sizes, alike=False)
-    terms = [A, B, C]
-    told = shrinking.shrink(
-        alone.cross_products(terms), alone.scale, terms, slice(1, 3), alike=False
-    )
-    assert told.coefficients == pytest.approx(mean, rel=1e-4, abs=1e-7)
-    assert told.nats == pytest.approx(nats, abs=1e-5)
+    held = np.isin(np.arange(len(names)), sum(groups, []))
+    assert ((told.precision > 0) == held).all()
+    if not how:
+        assert (of_plays(g, regression.scale, terms) == told.precision).all()
+        assert (of_plays(g, regression.scale, [B] * len(terms)) == 0).all()
 
 
 def test_a_coefficient_known_to_be_small_is_held_back(regression):
@@ -335,22 +275,6 @@ def test_a_coefficient_known_to_be_small_is_held_back(regression):
     assert abs(held[1]) < 1e-6 * abs(free[1])
     misfits = [session_misfit(g, 0, [3] * 3, np.ones(3) * v, regression.scale) for v in (1.0, 2.0)]
     assert misfits[0] == pytest.approx(2 * misfits[1])
-
-
-def test_axes_of_one_recording_that_share_a_cause_are_told_from_axes_that_do_not():
-    def of(seed, common):
-        made = dense.made(seed, 120)
-        rng = np.random.default_rng(seed)
-        made.rate_dps[:] = rng.normal(size=(120, 3)) * [1.0, 2.0, 1.0]
-        made.rate_dps += common * np.outer(np.sin(np.arange(120) / 20), [1.0, 2.0, -1.0])
-        return Regression([made])
-
-    chances = [coherence(of(seed, 0.0), [])[0] for seed in range(60)]
-    assert min(chances) > 1e-3 and 0.02 < np.mean(np.array(chances) < 0.1) < 0.2
-    p, covariance = coherence(of(1, 1.5), [])
-    assert p < 1e-3
-    along = np.linalg.eigh(covariance)[1][:, -1]
-    assert np.abs(along @ [1, 2, -1]) / np.sqrt(6) > 0.97
 
 
 def test_the_chance_of_a_common_cause_is_bartletts(sessions):
@@ -386,19 +310,6 @@ def test_turned_axes_have_equal_white_noise_and_the_first_is_along_what_is_commo
     assert (turned_axes(Regression([alike]), [A]) == np.eye(3)).all()
 
 
-def test_ratios_beside_nothing_are_those_of_one_column(sessions):
-    g = Regression(sessions[:1]).cross_products([], [(A,)])
-    base = fit_base(g, np.ones((1, 3)))
-    found = ratios(g, base, np.ones((1, 3)))
-    for a in range(3):
-        p = dense.problem(sessions[:1], [A])
-        after = dense.fitted(p, a)[0].max()
-        p.x = p.x[:, :0]
-        before = dense.fitted(p, a)[0].max()
-        assert found[0, a] == pytest.approx(2 * (after - before), rel=1e-5, abs=1e-7)
-    assert isinstance(Regression(sessions[:1]).whiteners[0], Whitener)
-
-
 @pytest.mark.parametrize(("times", "differs"), [(1.16, False), (1.23, True)])
 def test_a_session_is_noisier_beyond_two_and_a_half_deviations_of_what_it_may_seem(times, differs):
     one = dense.made(1, 400)
@@ -427,19 +338,7 @@ def test_a_block_is_an_outlier_beyond_six_robust_deviations_from_nine_neighbours
         assert regression.rate[0][:, a] == pytest.approx(np.where(out, middle, column))
         held += out.sum()
     assert regression.outliers == held and 2 < held < 15
-
-
-def test_play_operators_alone_are_shrunk_with_nothing_beside_them():
-    sessions = [dense.made(13, 20)]
-    few = [s for s in dense.SHAPES if is_of_the_few(s)]
-    both = [played(s) for s in sessions]
-    p = dense.problem(both, [Term("p"), Term("r")], shapes_=few)
-    regression = Regression(sessions, few=True)
-    every = [PLAYS[0], PLAYS[2]]
-    told = shrinking.shrink(regression.cross_products(every), regression.scale, every)
-    sizes = dense.products_of(
-        [1e-3, *(10.0**e for e in np.arange(-1, 4.1, 0.5))], [(1e-3, 0.1, 0.3, 1.0)]
-    )
-    nats, mean = dense.shrunk(p, [[0], [1]], sizes)
-    assert told.coefficients == pytest.approx(mean, rel=1e-4, abs=1e-7)
-    assert told.nats == pytest.approx(nats, abs=1e-5)
+    few = Regression([dense.made(8, 12, gap=range(2, 8))])
+    few.rate[0][0] = 1e6
+    few.settle([A])
+    assert few.outliers == 0
