@@ -102,21 +102,6 @@ def test_every_lock_must_open(sessions, monkeypatch):
     assert decide.decide(regression, [], one, 80.0, 1e9, [B]).p_value <= 1.0
 
 
-@pytest.mark.parametrize(("nats", "speaks"), [([1.5, 1.6], True), ([4.0, -1.0], False)])
-def test_pieces_left_out_have_the_last_word_where_they_are_asked(nats, speaks):
-    said = decide.Decision(True, 1e-6, 40.0, 1.5, np.zeros(0), tried=7.0)
-
-    def judged(straight, found, candidate):
-        assert (straight, found, candidate) == ([C], [B], [A])
-        return np.array(nats)
-
-    judged.reason = "pieces do not speak for it"
-    asked = said.on_pieces(judged, [C], [B], [A])
-    assert asked.accepted is speaks and asked.session_gains.tolist() == nats
-    assert asked.reason == ("" if speaks else judged.reason)
-    assert (asked.p_value, asked.ratio, asked.inflation, asked.tried) == (1e-6, 40.0, 1.5, 7.0)
-
-
 def pool():
     return [
         *(candidate(t, kind="thermal-lag") for t in (A, B)),
@@ -484,42 +469,6 @@ def test_a_curve_takes_enough_rests_and_each_power_once(blocks, shows):
     terms = [replace(TEMP, power=p, centre=c) for p, c in ((2, 1.0), (3, 2.0), (3, 3.0), (1, 4.0))]
     pool = [candidate(t, kind=kind) for t, kind in zip(terms, kinds)]
     assert [t.centre for t in curve.powers(pool)] == [1.0, 3.0]
-
-
-@pytest.mark.parametrize(
-    ("curves", "memories", "kinds"),
-    [
-        ([], [], ["supply"]),
-        ([5.0], [], ["supply", curve.KIND]),
-        ([5.0], [7.0], ["supply", "thermal-lag", curve.KIND]),
-        ([], [7.0], ["supply", "thermal-lag"]),
-    ],
-)
-def test_what_gains_more_is_taken_first_and_the_curve_gets_the_slots_that_are_left(
-    monkeypatch, curves, memories, kinds
-):
-    def found(kind, gain=0.0):
-        decision = decide.Decision(True, 0.0, 0.0, 1.0, np.array([gain]))
-        return Found(candidate(A, kind=kind), decision)
-
-    asked = []
-
-    def way(name, kind, gains):
-        def look(self, some, kept=0):
-            asked.append((name, [f.candidate.kind for f in some], kept))
-            return [found(kind, gain) for gain in gains]
-
-        return look
-
-    monkeypatch.setattr(curve.ByPieces, "_curve", way("curve", curve.KIND, curves))
-    monkeypatch.setattr(curve.ByPieces, "_memory", way("memory", "thermal-lag", memories))
-    told = curve.ByPieces(None, [], [], None, 0).look([found("supply")])
-    assert [f.candidate.kind for f in told] == kinds
-    assert asked[:2] == [("curve", ["supply"], 1), ("memory", ["supply"], 1)]
-    if memories:
-        assert asked[2] == ("curve", ["supply", "thermal-lag"], 0)
-    if curves:
-        assert asked[-1] == ("curve", kinds[:-1], 0)
 
 
 # --- places of steps ---

@@ -292,24 +292,3 @@ def test_where_a_simpler_effect_predicts_as_well_a_hysteresis_is_named_beside_it
     assert asked == [((), search.found, [LAG, VOLTS], 1, search._passes)]
     assert [bool(f.rivals) for f in selection.found] == [refused, False, refused]
     assert selection.smallest_dps == {"x": 1.0} and selection.stands_alone is False
-
-
-@pytest.mark.parametrize(
-    ("rests", "terms", "asked"),
-    [(12, (A,), True), (1, (A,), False), (12, (replace(A, memory="play", width=2.0),), False)],
-)
-def test_pieces_tell_of_a_curve_where_there_are_enough_and_no_hysteresis(
-    monkeypatch, rests, terms, asked
-):
-    monkeypatch.setattr(curve, "LEAST_OF_A_PIECE", 12 / curve.PIECES)
-    bent = found(Candidate(curve.KIND, (B,), "catalogue"))
-    search = searching(
-        pool=[LAG], forms=[KINK], found=[found(replace(VOLTS, terms=terms)), bent], taken=3
-    )
-    search.regression.sessions = [dense.made(1, rests)]
-    by = lambda *of: SimpleNamespace(look=lambda others: [of[1:], *others])  # noqa: E731
-    monkeypatch.setattr(curve, "ByPieces", by)
-    before = search.found
-    search._by_pieces("judged")
-    told = [((), [LAG, KINK], "judged", 3), before[0]]
-    assert search.found == (told if asked else before)

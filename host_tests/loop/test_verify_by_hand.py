@@ -30,7 +30,7 @@ from zerorate_tools.model.term import Term
 from zerorate_tools.recordings import Recording, Scales, write_recording
 from zerorate_tools.replay.samples import Frames
 
-from . import dense
+from . import dense, power_ons
 from .dense import A, B, C
 
 SCALES = Scales("MPU-6050", 5.0, 131.0, 16384.0, 340.0, 36.53)
@@ -50,16 +50,13 @@ def selected(sessions, *found, line=(), **more):
 # --- the firmware over a session ---
 
 
-def at_rest(seed=0, blocks=40, bias_lsb=(30, -20, 10), noise_lsb=4.0):
-    rng, n = np.random.default_rng(seed), blocks * PER
-    columns = {"t_us": np.arange(n, dtype=np.int64) * 200_000 + 5_000_000}
-    for name, bias in zip(("gx", "gy", "gz"), bias_lsb):
-        columns[name] = np.rint(rng.normal(bias, noise_lsb, n)).astype(np.int32)
-    for name, g in zip(("ax", "ay", "az"), (0, 0, 16384)):
-        columns[name] = np.rint(rng.normal(g, 60, n)).astype(np.int32)
-    columns["temp"] = np.rint(rng.normal(-3000, 3, n)).astype(np.int32)
-    columns["volt"] = np.rint(rng.normal(5000, 50, n)).astype(np.int32)
-    return columns
+def at_rest(seed=0, blocks=40, bias_lsb=(30, -20, 10)):
+    """Columns of a rest at one temperature, with a voltage beside it."""
+    n = blocks * PER
+    volts = np.random.default_rng(seed + 1000).normal(5000, 50, n)
+    columns = power_ons.at_rest(seed, n, 0, middle_degc=27.7, swing_degc=0.0)
+    columns |= {g: columns[g] + b for g, b in zip(("gx", "gy", "gz"), bias_lsb)}
+    return {**columns, "volt": np.rint(volts).astype(np.int32)}
 
 
 def powered_on(folder, columns, channels=(), name="s", **more):
