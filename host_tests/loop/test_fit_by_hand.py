@@ -412,7 +412,6 @@ def test_a_turn_s_nats_are_a_tenth_of_its_blocks_times_the_log_of_what_its_error
         for k in range(10)
     ]
     assert judged([LINE], [], [A]) == pytest.approx(expected)
-    assert single.speaks_for(np.array([1.0, -0.9])) and not single.speaks_for(np.array([1.0, -1.0]))
     one = single.nats(np.array([[4.0, 0.0, 1.0]]), np.array([[1.0, 1.0, np.inf]]), [10])
     assert one == pytest.approx([0.5 * 0.1 * 10 * np.log(4)])
     assert single.nats(np.ones((1, 3)), np.zeros((1, 3)), [10]).tolist() == [0.0]
@@ -488,17 +487,17 @@ def test_rows_without_a_number_count_nowhere_and_runs_of_fifteen_are_drawn():
 
 
 def test_the_chance_of_an_irrelevant_candidate_is_chi_squared_s_where_its_ratios_are():
-    theory = NullRatios.from_moments(3.0, 6.0, 3)
+    theory = NullRatios.of(3.0, 6.0, 3)
     assert theory.inflation == 1.0
     for ratio in (1.0, 7.8, 20.0):
         assert theory.survival(ratio) == pytest.approx(chi2.sf(ratio, 3))
         assert theory.survival(ratio, 2) == pytest.approx(chi2.sf(ratio, 6))
-    below = NullRatios.of(np.array([1.0, 2.0, 3.0]), 3)
+    below = NullRatios.of(2.0, 2 / 3, 3)
     assert (below.mean, below.variance) == (3, 6)
-    above = NullRatios.of(np.array([0.0, 10.0, 20.0]), 3)
+    above = NullRatios.of(10.0, 200 / 3, 3)
     assert (above.mean, above.inflation) == (10.0, 10 / 3)
     assert above.variance == pytest.approx(max(200 / 3, 2 * 10**2 / 3))
-    wide = NullRatios.from_moments(5.0, 100.0, 2)
+    wide = NullRatios.of(5.0, 100.0, 2)
     assert wide.variance == 100.0
     draws = np.random.default_rng(0).gamma(5 * 5 / 100, 100 / 5, 200_000)
     assert wide.survival(8.0) == pytest.approx((draws > 8).mean(), rel=0.03)

@@ -9,7 +9,7 @@ from zerorate_bench.loop.simulated import simulate
 from zerorate_tools.closing import close, load
 from zerorate_tools.loop.analyse import analyse
 from zerorate_tools.loop.fit.line import less_slope
-from zerorate_tools.loop.fit.single import PiecesByLine, speaks_for
+from zerorate_tools.loop.fit.single import PiecesByLine
 from zerorate_tools.loop.search.curve import ByPieces, powers, smooth_curve
 from zerorate_tools.loop.search.examine import cancels
 from zerorate_tools.loop.search.hysteresis import is_like_hysteresis
@@ -130,8 +130,8 @@ def test_whole_passes_tell_a_curve_over_temperature_from_a_walk_that_pieces_take
     (curve,) = smooth_curve([session], line, taken=0)
     pieces = PiecesByLine(session)
     asked = less_slope(line, curve.terms), (), curve.terms
-    assert speaks_for(pieces(*asked))
-    assert speaks_for(pieces.by_passes()(*asked)) == is_curve
+    assert pieces(*asked).sum() > 0
+    assert (pieces.by_passes()(*asked).sum() > 0) == is_curve
 
 
 def test_every_row_is_test_and_by_a_model_that_has_not_seen_it(tmp_path):

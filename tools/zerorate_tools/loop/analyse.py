@@ -114,9 +114,7 @@ def _look(
     return Analysis(sessions, train, held, selection, judgement, floor, gate, motion, lines)
 
 
-def _on_pieces(
-    session: Session, motion: InMotion, logs: Logs | None
-) -> PiecesByLine | PiecesByKernels:
+def _on_pieces(session: Session, motion: InMotion, logs: Logs | None) -> PiecesByLine:
     if not logs:
         return PiecesByLine(session)
     log = logs[session.name]

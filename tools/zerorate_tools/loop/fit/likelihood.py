@@ -16,10 +16,6 @@ TINY = 1e-10
 _OWN = 1e-6
 
 
-def _weights(scale: np.ndarray) -> np.ndarray:
-    return 1.0 / scale**2
-
-
 def _inverse(zz: np.ndarray) -> np.ndarray:
     """(G, J, J) inverses of scaled cross products, safe against a column of nothing."""
     j = zz.shape[-1]
@@ -78,7 +74,7 @@ def fit_base(g: CrossProducts, scale: np.ndarray) -> Base:
     logdet = g.logdet.sum(axis=0)
     rss, ll, coef, inv = [], [], [], []
     for a in range(axes):
-        w = _weights(scale[:, a])
+        w = 1.0 / scale[:, a] ** 2
         zz = np.tensordot(w, g.zz, 1)
         zy = np.tensordot(w, g.zy[..., a], 1)
         inverse = _inverse(zz)
@@ -96,7 +92,7 @@ def ratios(g: CrossProducts, base: Base, scale: np.ndarray) -> np.ndarray:
     out = np.empty((g.xx.shape[2], g.yy.shape[2]))
     count, logdet = g.count.sum(), g.logdet.sum(axis=0)
     for a in range(g.yy.shape[2]):
-        w = _weights(scale[:, a])
+        w = 1.0 / scale[:, a] ** 2
         xz = np.tensordot(w, g.xz, 1)
         xx0 = np.tensordot(w, g.xx, 1)
         xx = xx0 - np.einsum("gkpi,gij,gkqj->gkpq", xz, base.inverse[a], xz, optimize=True)

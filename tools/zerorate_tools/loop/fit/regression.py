@@ -61,7 +61,7 @@ class Regression:
             for step in s.steps:
                 own = [np.zeros(o.blocks) for o in self.sessions]
                 own[i][step.block :] = 1.0
-                out.append([w.prepare(b[:, None])[:, 0] for w, b in zip(self.whiteners, own)])
+                out.append(self._prepared(own))
         return out
 
     def prepare(self) -> None:
@@ -92,10 +92,7 @@ class Regression:
     def columns(self, term: Term) -> list[np.ndarray]:
         """Prepared (N,) column of each session."""
         if term not in self._cache:
-            self._cache[term] = [
-                w.prepare(block_basis(term, s)[:, None])[:, 0]
-                for w, s in zip(self.whiteners, self.sessions)
-            ]
+            self._cache[term] = self._prepared(block_basis(term, s) for s in self.sessions)
         return self._cache[term]
 
     def forget(self, term: Term) -> None:
@@ -107,15 +104,14 @@ class Regression:
         return list(self._extra)
 
     def set_events(self, columns: list[list[np.ndarray]], kept: list | None = None) -> None:
-        """Replace the further nuisances. kept: prepared ones that stay."""
-        self._extra = self._known if kept is None else list(kept)
-        self._extra = list(self._extra)
-        for c in columns:
-            self.add_column(c)
+        """Replace the further nuisances by (n,) blocks of each session. kept: prepared ones that
+        stay."""
+        prepared = [self._prepared(blocks) for blocks in columns]
+        self._extra = [*(self._known if kept is None else kept), *prepared]
 
-    def add_column(self, blocks: list[np.ndarray]) -> None:
-        """A further nuisance given as (n,) block values a session (an event, for one)."""
-        self._extra.append([w.prepare(b[:, None])[:, 0] for w, b in zip(self.whiteners, blocks)])
+    def _prepared(self, blocks) -> list[np.ndarray]:
+        """(N,) of each session's (n,) blocks."""
+        return [w.prepare(b[:, None])[:, 0] for w, b in zip(self.whiteners, blocks)]
 
     def stack(self, terms) -> list[np.ndarray]:
         """(N, J) columns of the terms and the events, a session each."""

@@ -212,11 +212,6 @@ def nats(before: np.ndarray, after: np.ndarray, blocks: Sequence[int] | np.ndarr
     return (0.5 * _WORTH * count * ratio).sum(axis=1)
 
 
-def speaks_for(gain: np.ndarray) -> bool:
-    """Whether nats gained on pieces left out speak for an effect."""
-    return bool(gain.sum() > 0)
-
-
 def held(term: Term, sessions: Sequence[Session]) -> Term:
     """The term held at the edges of what some sessions show of its source; one that reaches beyond
     all that the source does, as far beyond them; one with a curve, where that ends."""

@@ -32,13 +32,8 @@ class NullRatios:
     dof: int
 
     @classmethod
-    def of(cls, ratios: np.ndarray, dof: int) -> NullRatios:
-        """By some ratios of which none is of a true effect."""
-        return cls.from_moments(float(ratios.mean()), float(ratios.var()), dof)
-
-    @classmethod
-    def from_moments(cls, mean: float, variance: float, dof: int) -> NullRatios:
-        """By their mean and variance."""
+    def of(cls, mean: float, variance: float, dof: int) -> NullRatios:
+        """By those of some ratios of which none is of a true effect."""
         mean = max(mean, dof)
         return cls(mean, max(variance, 2 * mean**2 / dof), dof)
 
@@ -58,14 +53,10 @@ def null_ratios(regression, terms, candidate, pool) -> NullRatios:
     rng = np.random.default_rng(0)
     every = [*terms, *candidate]
     z, left = regression.stack(every), regression.left(every, regression.fit(every))
-    return NullRatios.of(_ratios(regression, left, z, pool, rng), regression.y[0].shape[1])
-
-
-def _ratios(regression, left, z, pool, rng) -> np.ndarray:
-    """(COUNT,) of surrogates."""
     pick = [pool[i] for i in rng.integers(0, len(pool), COUNT)]
     x = [np.column_stack([regression.columns(t)[i] for t in pick]) for i in range(len(z))]
     x = [c * rng.normal(size=c.shape) for c in x]
     g = cross_products(regression.whiteners, left, z, x)
     base = fit_base(g, regression.scale)
-    return ratios(g, base, regression.scale).sum(axis=1)
+    found = ratios(g, base, regression.scale).sum(axis=1)
+    return NullRatios.of(float(found.mean()), float(found.var()), regression.y[0].shape[1])

@@ -185,24 +185,29 @@ def candidates(sessions: list[Session]) -> list[Candidate]:
 
 def lags(sessions: list[Session]) -> list[Term]:
     """The temperature less its lags, and the squares: what parts add that are late, or early."""
-    if "temp" not in common_sources(sessions):
-        return []
-    centre = float(np.mean([s.sources["temp"].mean() for s in sessions]))
-    own = [Term("temp", centre=centre, lag_s=lag, lag_mode="difference") for lag in _LAGS_S]
+    own = [
+        Term("temp", centre=mean, lag_s=lag, lag_mode="difference")
+        for mean in _mean_degc(sessions)
+        for lag in _LAGS_S
+    ]
     return [replace(t, power=k, power_first=k > 1) for t in own for k in (1, 2)]
 
 
 def late(sessions: list[Session]) -> list[Candidate]:
     """What a part adds that is late behind its thermometer by seconds, or early: the rate of
     temperature times the slope of the bias, which bends with temperature."""
-    if "temp" not in common_sources(sessions):
-        return []
-    centre = float(np.mean([s.sources["temp"].mean() for s in sessions]))
     rates = [Term("temp", lag_s=lag, lag_mode="rate") for lag in _LATE_S]
     return [
-        Candidate("thermal-rate", (r, replace(r, second="temp", second_centre=centre)), "catalogue")
+        Candidate("thermal-rate", (r, replace(r, second="temp", second_centre=mean)), "catalogue")
+        for mean in _mean_degc(sessions)
         for r in rates
     ]
+
+
+def _mean_degc(sessions: list[Session]) -> list[float]:
+    """Mean temperature of all sessions, these weighing alike; nothing where it is unknown."""
+    there = "temp" in common_sources(sessions)
+    return [float(np.mean([s.sources["temp"].mean() for s in sessions]))] if there else []
 
 
 def _group(row: Effect, span, varied, sessions) -> list[Candidate]:

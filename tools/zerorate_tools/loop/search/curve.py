@@ -18,7 +18,7 @@ from ..fit.single import LEAST_OF_A_PIECE, PIECES, PiecesByLine
 from ..fit.smooth import curve_of
 from ..read.sessions import Session
 from .catalogue import Candidate, beyond, ranges, varies
-from .decide import LIKELY, Decision, JudgedOnPieces, family_p
+from .decide import LIKELY, Decision, family_p
 from .examine import cancels
 from .hysteresis import MEMORIES, is_like_hysteresis
 from .refine import refined
@@ -68,7 +68,7 @@ class ByPieces:
     regression: Regression
     line: Sequence[Term]
     pool: Sequence[Candidate]
-    judged: JudgedOnPieces
+    judged: PiecesByLine
     taken: int
 
     def look(self, found: list[Found]) -> list[Found]:

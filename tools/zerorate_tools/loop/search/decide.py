@@ -1,8 +1,9 @@
 """When a candidate counts as found: several locks, each of which must open."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import Protocol
 
 import numpy as np
 from scipy.stats import chi2
@@ -10,6 +11,7 @@ from scipy.stats import chi2
 from ...model.term import Term
 from ..fit.left_out import gains
 from ..fit.noise import NATS
+from ..fit.single import PiecesByLine
 from ..fit.surrogates import null_ratios
 
 #: Family-wise levels: the chance that anything of the family passes the first lock on a device
@@ -27,20 +29,6 @@ WEIGHT = {"time-drift": 6.0, "power-on-transient": 6.0}
 LIKELY = 0.01
 
 
-class JudgedOnPieces(Protocol):
-    """What an effect gains on pieces of a recording that are left out; `reason` of a refusal."""
-
-    reason: str
-
-    def __call__(
-        self, straight: Sequence[Term], found: Sequence[Term], candidate: Sequence[Term]
-    ) -> np.ndarray:
-        """(folds,) nats by which each piece is better predicted with the candidate."""
-
-    def by_passes(self) -> "JudgedOnPieces":
-        """The same, on whole passes of the temperature where it passes twice."""
-
-
 @dataclass
 class Decision:
     """What the locks said of a candidate. tried: candidates that p_value has paid for."""
@@ -55,11 +43,11 @@ class Decision:
 
     def on_pieces(
         self,
-        judged: JudgedOnPieces,
+        judged: PiecesByLine,
         straight: Sequence[Term],
         found: Sequence[Term],
         candidate: Sequence[Term],
-    ) -> "Decision":
+    ) -> Decision:
         """The same, unless pieces left out do not speak for the candidate."""
         gain = judged(straight, found, candidate)
         accepted = bool(gain.sum() > NATS)

@@ -7,10 +7,11 @@ from ...model.term import Term
 from ..fit.common_cause import RARE
 from ..fit.line import less_slope, ordinary
 from ..fit.regression import predicted
+from ..fit.single import PiecesByLine
 from ..read.sessions import Session
 from . import drift_test
 from .catalogue import Candidate
-from .decide import Decision, JudgedOnPieces, decide
+from .decide import Decision, decide
 from .hysteresis import KIND, is_like_hysteresis, may_show
 from .multiple_testing import MultipleTesting
 from .refine import drawn, refined
@@ -28,7 +29,7 @@ class Examiner:
     pieces of it left out.
     """
 
-    def __init__(self, testing: MultipleTesting, judged: JudgedOnPieces | None) -> None:
+    def __init__(self, testing: MultipleTesting, judged: PiecesByLine | None) -> None:
         self.testing, self.judged = testing, judged
         self.regression, self.pool = testing.regression, testing.pool
         self.singles = [c.terms[0] for c in self.pool if len(c.terms) == 1]
@@ -82,7 +83,7 @@ class Examiner:
             return drift_test.considered(r, nuisances, best, ratio, tried)
         return decide(r, nuisances, best, ratio, tried, self.singles)
 
-    def _by_pieces(self, decision, judged: JudgedOnPieces, best, straight, found) -> Decision:
+    def _by_pieces(self, decision, judged: PiecesByLine, best, straight, found) -> Decision:
         sessions, beside = self.regression.sessions, (straight, found)
         reason = ""
         if cancels(sessions, [*less_slope(straight, best.terms), *found], best.terms):

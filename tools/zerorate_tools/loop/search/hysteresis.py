@@ -7,7 +7,7 @@ in turn. That is what keeps it small: a form with more operators has to predict 
 place on the board is limited.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import combinations
 from math import comb
 
@@ -18,10 +18,10 @@ from ...model.term import Term, play
 from ..fit.likelihood import TINY
 from ..fit.noise import NATS
 from ..fit.regression import Regression
-from ..fit.single import PiecesByLine, pass_of, speaks_for
+from ..fit.single import PiecesByLine, pass_of
 from ..read.sessions import Session, block_basis
 from .catalogue import Candidate, varies
-from .decide import LEVEL, Decision, JudgedOnPieces, family_p
+from .decide import LEVEL, Decision, family_p
 from .selection import Found, fits_in_slots
 
 KIND = "thermal-hysteresis"
@@ -46,9 +46,6 @@ LEAST_FACTOR = 2.5
 #: Temperatures of a block when widths are looked for.
 _A_BLOCK = 8
 
-#: (straight, beside, candidate) -> nats gained on each part left out.
-Judged = Callable[[Sequence[Term], Sequence[Term], Sequence[Term]], np.ndarray]
-
 
 def may_show(sessions: Sequence[Session]) -> bool:
     """Whether temperature turns back in some session: a part only warmed shows no difference
@@ -70,7 +67,10 @@ def is_like_hysteresis(straight, beside, best: Candidate, pool, sessions: list[S
 
 
 def best_hysteresis(
-    sessions: Sequence[Session], straight: Sequence[Term], beside: Sequence[Term], judged: Judged
+    sessions: Sequence[Session],
+    straight: Sequence[Term],
+    beside: Sequence[Term],
+    judged: PiecesByLine,
 ) -> tuple[Candidate | None, float]:
     """The sum of play operators that predicts best what is left out, and the nats that it gains;
     None where none does better.
@@ -93,7 +93,7 @@ def of_one_recording(
     straight: Sequence[Term],
     bends: Sequence[tuple[Term, ...]],
     pool: Sequence[Candidate],
-    judged: JudgedOnPieces,
+    judged: PiecesByLine,
     taken: int,
 ) -> tuple[Found | None, str]:
     """The hysteresis of a recording that stands alone, with its bend as one effect, or why not.
@@ -121,7 +121,7 @@ def of_one_recording(
     if _factor(straight, bends, whole, by_line) < LEAST_FACTOR:
         return None, "too little of the error to tell it from the noise's walk"
     nats = judged(straight, (), whole)
-    if not speaks_for(nats):
+    if nats.sum() <= 0:
         return None, judged.reason
     decision = Decision(True, p, ratio, session_gains=nats)
     return Found(Candidate(KIND, whole, "catalogue"), decision), ""
@@ -176,6 +176,13 @@ def _forms(sessions, beside) -> Iterator[tuple[Term, ...]]:
             yield fits.terms(fits.best(number, powers), powers)
 
 
+def span_of(sessions: Sequence[Session]) -> tuple[float, float, float]:
+    """Lowest, highest and mean temperature of some sessions, these weighing alike, degC."""
+    degc = [s.source("temp") for s in sessions]
+    lowest, highest = min(d.min() for d in degc), max(d.max() for d in degc)
+    return float(lowest), float(highest), float(np.mean([d.mean() for d in degc]))
+
+
 def _some_of(session: Session) -> np.ndarray:
     """(n, few) indices of ticks, evenly within each block."""
     ticks = session.ticks_per_block
@@ -188,10 +195,7 @@ class _Fits:
 
     def __init__(self, sessions: Sequence[Session], beside: Sequence[Term]) -> None:
         self._sessions = sessions
-        degc = [s.source("temp") for s in sessions]
-        self._lo = float(min(d.min() for d in degc))
-        self._hi = float(max(d.max() for d in degc))
-        self._centre = float(np.mean([d.mean() for d in degc]))
+        self._span = self._lo, self._hi, self._centre = span_of(sessions)
         self._columns: dict[tuple[float, int], np.ndarray] = {}
         rate = [s.rate_dps[s.available] for s in sessions]
         self.rows = sum(map(len, rate))
@@ -214,8 +218,7 @@ class _Fits:
 
     def term(self, radius: float, power: int) -> Term:
         """A play operator of temperature, or its square."""
-        width = 2.0 * float(radius)
-        return Term("temp", self._lo, self._hi, self._centre, power, memory="play", width=width)
+        return Term("temp", *self._span, power, memory="play", width=2.0 * float(radius))
 
     def terms(self, radii: Sequence[float], powers: Sequence[int]) -> tuple[Term, ...]:
         """Those of some radii, each with its powers."""

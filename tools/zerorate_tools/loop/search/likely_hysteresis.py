@@ -19,7 +19,7 @@ from ..fit.shrunk import evidence
 from ..read.sessions import Session
 from .catalogue import Candidate
 from .decide import Decision
-from .hysteresis import AS_WELL, BETTER, KIND, MOST_OPERATORS, SIMPLER, may_show
+from .hysteresis import AS_WELL, BETTER, KIND, MOST_OPERATORS, SIMPLER, may_show, span_of
 from .selection import Found, fits_in_slots
 
 #: Radii of the finest operator, as shares of the range of temperature, and how many times as wide
@@ -68,9 +68,7 @@ def of_a_pair(
 
 def _forms(sessions: Sequence[Session]) -> Iterator[tuple[Term, ...]]:
     """Sums of play operators, fine ones and wide, with squares and without."""
-    degc = [s.source("temp") for s in sessions]
-    lo, hi = float(min(d.min() for d in degc)), float(max(d.max() for d in degc))
-    centre = float(np.mean([d.mean() for d in degc]))
+    lo, hi, centre = span_of(sessions)
     for finest, powers in product(_FINEST, ((1,), (1, 2))):
         widths = 2.0 * (hi - lo) * finest * _APART ** np.arange(MOST_OPERATORS)
         yield tuple(

@@ -11,11 +11,11 @@ from ..fit.common_cause import RARE, coherence, turned_axes
 from ..fit.line import less_slope
 from ..fit.regression import Regression
 from ..fit.shrunk import evidence, has_play_operators
+from ..fit.single import PiecesByLine
 from ..read.sessions import Session
 from . import curve, hysteresis
 from .catalogue import Candidate, ranges
 from .catalogue import candidates as all_candidates
-from .decide import JudgedOnPieces
 from .drift_test import follows_time
 from .examine import Examiner
 from .likely_hysteresis import likeliest, of_a_pair
@@ -43,7 +43,7 @@ class Search:
         self,
         sessions: list[Session],
         taken: int = 0,
-        on_pieces: JudgedOnPieces | None = None,
+        on_pieces: PiecesByLine | None = None,
         judged_again: bool = False,
     ):
         self.taken, self.judged_again = taken, judged_again
@@ -124,7 +124,7 @@ class Search:
             smallest = smallest_dps(r, beside, quadratic, needed)
             return {**smallest, **smallest_dps(r, self._beside_bend(), bent, needed)}
 
-    def _begin_with_one(self, judged: JudgedOnPieces):
+    def _begin_with_one(self, judged: PiecesByLine):
         """The hysteresis that one course of temperature shows, else a curve as a candidate."""
         r, every = self.regression, self.pool
         if not self.judged_again:
@@ -146,7 +146,7 @@ class Search:
             self.pool += curve.smooth_curve(r.sessions, self.line, self.taken)
         self.refused += [(hysteresis.KIND, refused)] if refused else []
 
-    def _by_pieces(self, judged: JudgedOnPieces):
+    def _by_pieces(self, judged: PiecesByLine):
         """What pieces left out tell of temperature, in the place of a curve that was found."""
         enough = curve.shows_a_curve(self.regression.sessions[0])
         if enough and not has_play_operators(self.terms()):
@@ -269,7 +269,7 @@ class Search:
 def select(
     sessions: list[Session],
     taken: int = 0,
-    on_pieces: JudgedOnPieces | None = None,
+    on_pieces: PiecesByLine | None = None,
     judged_again: bool = False,
 ) -> Selection:
     """Everything that the training sessions show, as far as the firmware has room for it.

@@ -43,11 +43,6 @@ class Found:
         """What else it may be."""
         return [name for name in self.probabilities if name != self.candidate.label]
 
-    def without_axes(self, axes: Iterable[bool]) -> Found:
-        """The same without what it corrects on some axes, (3,) bool."""
-        kept = tuple(a and not s for a, s in zip(self.axes, axes))
-        return replace(self, axes=kept)
-
 
 @dataclass
 class Selection:
@@ -81,11 +76,12 @@ class Selection:
 
     def without_axes(self, effect: int, axes: Iterable[bool], reason: str) -> Selection:
         """The same with an effect taken from some axes, and withdrawn where none is left."""
-        less = self.found[effect].without_axes(axes)
-        if not any(less.axes):
+        less, found = self.found[effect], list(self.found)
+        kept = tuple(own and not gone for own, gone in zip(less.axes, axes))
+        if not any(kept):
             said = (less.candidate.label, reason)
             return replace(self.without(effect), withdrawn=[*self.withdrawn, said])
-        found = [less if i == effect else f for i, f in enumerate(self.found)]
+        found[effect] = replace(less, axes=kept)
         return replace(self, found=found)
 
     @property

@@ -239,9 +239,8 @@ def _survival(ratio: float, away: np.ndarray, axes: int = 3) -> float:
     if len(away) < EDGE:
         return float(chi2.sf(ratio, axes))
     mean, variance = np.mean([(axes, 2 * axes), (away.mean(), away.var())], axis=0)
-    return max(
-        float(chi2.sf(ratio, axes)), NullRatios.from_moments(mean, variance, axes).survival(ratio)
-    )
+    by_theory, by_places = chi2.sf(ratio, axes), NullRatios.of(mean, variance, axes).survival(ratio)
+    return max(float(by_theory), by_places)
 
 
 def _sized(regression, terms, steps, kept=()) -> list[Step]:
