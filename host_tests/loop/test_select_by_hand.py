@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from zerorate_tools.loop.search import curve, examine, hysteresis, select
+from zerorate_tools.loop.search import examine, hysteresis, select
 from zerorate_tools.loop.search.catalogue import Candidate
 from zerorate_tools.loop.search.decide import Decision
 from zerorate_tools.loop.search.examine import Examiner
@@ -57,30 +57,6 @@ def examiner():
     return Examiner(testing, None)
 
 
-def test_a_candidate_is_examined_as_it_is_refined_and_drawn(examiner, monkeypatch):
-    better, drawn = replace(LAG, refine=("better",)), replace(LAG, refine=("drawn",))
-    told = {"refined": {LAG: better}, "drawn": {better: drawn}}
-    for name, by in told.items():
-        of = lambda r, beside, c, by=by: beside == [A, B] and by[c]  # noqa: E731
-        monkeypatch.setattr(examine, name, of)
-    asked, said = [], PASSED
-    decide = lambda r, nuisances, *of: asked.append((nuisances, of)) or said  # noqa: E731
-    monkeypatch.setattr(examine, "decide", decide)
-    assert examiner.examine(LAG, (A,), [B], [C]) == Found(drawn, PASSED)
-    assert asked == [([C], (better, 9.0, 3.0, [LAG.terms[0], VOLTS.terms[0]]))]
-    said = replace(PASSED, accepted=False, reason="no")
-    assert examiner.examine(LAG, (A,), [B], [C]) == ("thermal-lag", "no")
-    assert not examiner.accepts(VOLTS, (A,), [B], []) and asked[-1][1][:2] == (VOLTS, 10.0)
-    considered = lambda r, nuisances, *of: asked.append(of) or PASSED  # noqa: E731
-    monkeypatch.setattr(examine.drift_test, "considered", considered)
-    assert examiner.accepts(DRIFT, (A,), [B], [C]) and asked[-1] == (DRIFT, 9.0, 3.0)
-    examiner.judged, said = "pieces", PASSED
-    right = ("pieces", VOLTS, (A,), [B])
-    by_pieces = lambda self, said, *of: replace(said, accepted=of == right)  # noqa: E731
-    monkeypatch.setattr(Examiner, "_by_pieces", by_pieces)
-    assert examiner.accepts(VOLTS, (A,), [B], []) and not examiner.accepts(VOLTS, (A,), [C], [])
-
-
 @pytest.mark.parametrize(("chance", "idle"), [(0.34e-3, True), (0.33e-3, False)])
 def test_an_effect_is_idle_where_the_rest_explains_it(examiner, monkeypatch, chance, idle):
     assert examiner.is_idle(LAG, [A, B]) and not examiner.is_idle(LAG, [A])
@@ -108,21 +84,6 @@ def test_on_one_recording_more_speaks_against_an_effect(
     told = examiner._by_pieces(PASSED, judged, candidate, (A,), [B])
     assert (told.accepted, told.reason or "pieces") == (said == "pieces", said)
     assert told.session_gains.sum() == 9.0 * (said == "pieces")
-
-
-@pytest.mark.parametrize(
-    ("best", "loops", "alike"),
-    [
-        *((LAG, 5.0, True), (LAG, 4.9, False), (START, 5.0, True)),
-        *((KINK, 9.0, False), (RATE, None, False)),
-    ],
-)
-def test_a_loop_that_predicts_as_well_stands_for_a_memory(monkeypatch, best, loops, alike):
-    told = {best.terms: [2.0, 3.0], LOOP.terms: [1.0, (loops or 0.0) - 1.0]}
-    by_line = lambda session: lambda straight, beside, terms: np.array(told[terms])  # noqa: E731
-    monkeypatch.setattr(hysteresis, "PiecesByLine", by_line)
-    pool = [LAG, *([LOOP] if loops else [])]
-    assert hysteresis.is_like_hysteresis([], [], best, pool, ["s"]) is alike
 
 
 def test_forms_of_a_hysteresis_have_one_to_four_operators_without_and_with_squares(monkeypatch):
@@ -189,45 +150,6 @@ def test_a_sum_of_play_operators_takes_the_place_of_what_remembers_if_it_is_like
     assert [f.rivals for f in search.found] == rivals
 
 
-POOL = [LAG, KINK, BEND, DRIFT, START, VOLTS]
-
-
-@pytest.mark.parametrize(
-    ("again", "rests", "loop", "why", "kinds", "refused"),
-    [
-        (False, 12, None, "", [LAG, VOLTS, "curve"], []),
-        (False, 12, LOOP, "", [LAG, VOLTS], []),
-        (False, 12, None, "as well", [LAG, VOLTS, "curve"], [(hysteresis.KIND, "as well")]),
-        (True, 12, None, "", [LAG, DRIFT, START, VOLTS, "curve"], []),
-        (True, 12, LOOP, "", [LAG, DRIFT, START, VOLTS], []),
-        (False, 1, LOOP, "", [LAG, VOLTS],
-         [(curve.KIND, "too few rests to tell by pieces left out")]),
-    ],
-)  # fmt: skip
-def test_a_recording_alone_is_asked_for_a_hysteresis_first(
-    monkeypatch, again, rests, loop, why, kinds, refused
-):
-    session, bend, judged = dense.made(1, rests), BEND.terms, object()
-    said = (found(loop) if loop else None), why
-    every = POOL if again else [c for c in POOL if c not in (DRIFT, START)]
-    pair, alone = (bend, every, 5), ([(), bend, bend], every, judged, 5)
-    monkeypatch.setattr(curve, "LEAST_OF_A_PIECE", 12 / curve.PIECES)
-    monkeypatch.setattr(
-        select, "of_a_pair", lambda r, line, *of: said if of == pair and again else 1
-    )
-    one = lambda r, line, *of: said if of == alone and not again else 1  # noqa: E731
-    monkeypatch.setattr(hysteresis, "of_one_recording", one)
-    smooth = lambda sessions, line, taken: ["curve"] * (taken == 5)  # noqa: E731
-    monkeypatch.setattr(curve, "smooth_curve", smooth)
-    search = searching(pool=POOL, judged_again=again, taken=5)
-    search.regression.sessions = [session]
-    search._begin_with_one(judged)
-    assert search.pool == kinds and search.refused == refused
-    assert search.forms == ([KINK, BEND] if rests > 9 else [])
-    begun = loop is not None and rests > 9
-    assert (len(search.found), search.kept) == (begun, begun)
-
-
 def test_the_best_of_four_kinds_are_tried_by_their_likelihood_less_what_they_cost():
     every = [replace(LAG, kind=str(k), terms=(A,) * (1 + (k == 3))) for k in range(9)]
     every += [
@@ -274,21 +196,3 @@ def test_what_is_named_anew_must_pass_beside_the_others(monkeypatch):
     assert asked == [(LAG, (A,), [C], [A, B, C]), (BEND, (A,), [C], [A, C])]
     assert not search._passes(LAG, [D] * 6) and len(asked) == 2
     assert search._nuisances(BEND) == [A] and search._nuisances(LAG) == [A, B]
-
-
-@pytest.mark.parametrize("refused", [True, False])
-def test_where_a_simpler_effect_predicts_as_well_a_hysteresis_is_named_beside_it(
-    monkeypatch, refused
-):
-    asked = []
-    every = [LAG, Candidate(curve.KIND, (A,), "catalogue"), VOLTS]
-    search = searching(pool=every, found=[*map(found, (LAG, VOLTS, KINK))], kept=1, own_bend=(B,))
-    search.refused = [(hysteresis.KIND, hysteresis.AS_WELL)] if refused else []
-    search._add_one = lambda: False
-    search._smallest = lambda: {"x": 1.0}
-    search._widen_hysteresis = lambda: None
-    monkeypatch.setattr(select, "name_found", lambda r, *of: asked.append(of))
-    selection = search.run()
-    assert asked == [((), search.found, [LAG, VOLTS], 1, search._passes)]
-    assert [bool(f.rivals) for f in selection.found] == [refused, False, refused]
-    assert selection.smallest_dps == {"x": 1.0} and selection.stands_alone is False

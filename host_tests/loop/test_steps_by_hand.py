@@ -136,12 +136,6 @@ def test_the_weakest_goes_where_not_all_stand_beside_each_other(sessions, monkey
     assert standing(Regression([dense.made(0, 12)]), [A], 1, []) == []
 
 
-def test_no_more_than_four_steps_a_recording_are_looked_for():
-    places = [(b, 0.0, [20.0 * (-1) ** k] * 3) for k, b in enumerate((12, 20, 28, 36, 44, 52))]
-    found = standing(Regression([stepped(noise(9, 70), *places)]), [], 1, [])
-    assert len(found) <= 4
-
-
 def test_what_bends_slowly_is_no_abrupt_change():
     slow = noise(4)
     slow.rate_dps += np.outer(np.clip((np.arange(BLOCKS) - 20) / 16, 0, 1), [20.0, 20.0, -20.0])
@@ -233,18 +227,6 @@ def test_a_step_stands_beside_a_ramp_with_those_within_eight_blocks_taken_out(
     steps = [Step(i, b, n * np.ones(3), 9.0, 0.0, share=share) for i, b, share, n in places]
     assert listed._is_no_ramp(told, [], steps, steps[0], []) is stands
     assert there[0] == steps[2:] and all(both == [*steps[2:], *steps[:2]] for both in there[1:])
-
-
-def test_two_are_the_same_within_two_blocks_of_one_session():
-    def at(session, block):
-        return Step(session, block, np.zeros(3), 1.0, 1.0)
-
-    assert listed._is_same(at(0, 5), at(0, 7)) and listed._is_same(at(0, 7), at(0, 5))
-    assert not listed._is_same(at(0, 5), at(0, 8)) and not listed._is_same(at(0, 5), at(1, 5))
-
-
-def test_the_level_of_a_step_beside_others_is_lower():
-    assert (listed._level(0), listed._level(1), listed._level(3)) == (2e-3, 1e-4, 1e-4)
 
 
 COLD = Term("temp", centre=20.0)
@@ -363,22 +345,6 @@ def test_two_that_undo_each_other_within_two_blocks_are_a_disturbance(second, un
     first = Step(0, 31, np.ones(3), 9.0, 0.0, share=0.5)
     other = Step(session, block, np.full(3, size), 9.0, 0.0, share=share)
     assert steps_first._undoes(first, other) is undone
-
-
-@pytest.mark.parametrize(("share", "held"), [(0.0, [31, 32]), (0.25, [30, 31, 32])])
-def test_a_disturbance_is_held_on_a_line_between_its_neighbours(share, held):
-    sessions = [noise(4), noise(5)]
-    sessions[1].weight[33] = 0.0  # the next one that is known is 34
-    regression = Regression(sessions)
-    before = regression.rate[1].copy()
-    steps_first._hold(
-        regression, *(Step(1, b, np.ones(3), 9.0, 0.0, share=share) for b in (31, 33))
-    )
-    rate = regression.rate[1]
-    assert np.flatnonzero((rate != before).any(axis=1)).tolist() == held
-    a, b = held[0] - 1, 34
-    line = [before[a] + (before[b] - before[a]) * (k - a) / (b - a) for k in held]
-    assert rate[held] == pytest.approx(np.array(line))
 
 
 @pytest.mark.parametrize(

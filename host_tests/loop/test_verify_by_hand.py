@@ -638,35 +638,6 @@ def test_models_are_none_those_of_the_first_effects_and_the_whole_one(warm):
     assert [len(m.slots) for m in models[1:]] == [1, 2, 2] and models[-1] is whole
 
 
-@pytest.mark.parametrize(("fitted", "inside"), [(3, []), (2, ["s1", "s2"]), (0, [])])
-def test_of_one_recording_pieces_run_and_of_few_they_run_beside_the_sessions(
-    monkeypatch, warm, fitted, inside
-):
-    train = warm[:fitted] or warm[:1]
-    analysis = replace(analysed(warm, effect(VOLTS)), train=train, holdout=warm[3:])
-    analysis = replace(analysis, sessions=[*train, *warm[3:]] if fitted else train)
-    power_ons = [SimpleNamespace(session=s) for s in analysis.sessions]
-    made = lambda *of, **how: SimpleNamespace(of=of, **how, course=lambda *of: of, learn=int)  # noqa: E731
-    for name in ("PiecesByKernels", "PieceRuns", "SessionRuns"):
-        monkeypatch.setattr(run_kernels, name, made)
-    asked = []
-    runs = lambda *of: asked.append(of) or made(*of)  # noqa: E731
-    monkeypatch.setattr(run_kernels, "SessionRuns", runs)
-    course = run_kernels._course_of(analysis, power_ons, model_of(analysis, SCALES), SCALES)
-    if not fitted:
-        assert course("s1", True, "sink") == ("sink",) and asked == []
-        return
-    assert course("s1", True, "sink") == ("s1", True, "sink")
-    [(every, names, held, models, scales, pieces)] = asked
-    assert (every, names, held) == (power_ons, [s.name for s in train], ["s4"])
-    assert list(pieces) == inside and len(models) == 2 and scales is SCALES
-    for name, one in pieces.items():
-        judged, selection, more = one.of
-        assert selection is analysis.selection and more == [] and judged.shrunk
-        assert judged.of[0].session.name == name and judged.of[1] is SCALES
-        assert [s.name for s in judged.of[2]] == [n for n in inside if n != name]
-
-
 def test_columns_of_the_corrected_rows_are_what_was_subtracted(tmp_path):
     (frames,) = powered_on(tmp_path, at_rest(0, 2)).frames()
     test = np.arange(40) >= 30
