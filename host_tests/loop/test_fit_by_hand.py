@@ -88,21 +88,6 @@ def test_only_the_plain_line_over_temperature_is_the_slope(change):
     assert line.less_slope((LINE,), [A, replace(TEMP, **change)]) == (LINE,)
 
 
-def test_axes_are_fitted_by_what_is_applied_to_them_alone():
-    asked = []
-
-    def fit(terms):
-        asked.append(terms)
-        return np.array([[10.0 * len(terms) + axis] * 1 for axis in range(3)]).T.repeat(
-            len(terms), 0
-        )
-
-    applied = np.array([[1, 1, 0], [1, 1, 1.0], [0, 0, 0]])
-    out = line.by_axis(fit, [A, B, C], applied)
-    assert out.tolist() == [[20, 21, 0], [20, 21, 12], [0, 0, 0]]
-    assert sorted(map(len, asked)) == [1, 2] and [B] in asked and [A, B] in asked
-
-
 def test_the_line_is_applied_where_no_slope_is():
     one = line.with_line([LINE, LINE], [A, TEMP], np.array([[1, 1, 1], [0, 1, 0.0]]))
     assert one.tolist() == [[1, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 0]]
@@ -132,20 +117,6 @@ def test_what_is_deployed_is_the_fit_and_beside_it_the_line_as_the_firmware_lear
     assert terms == [] and told.shape == (0, 3)
     spared = np.array([[1.0, 0.0, 1.0]])
     assert line.deployed(selected(sessions, [A], applied=spared))[1][1, 1] == 0
-
-
-@pytest.mark.parametrize("stands_alone", [True, False])
-def test_play_operators_are_deployed_as_large_as_is_likely_unless_one_stands_alone(
-    sessions, stands_alone
-):
-    terms = [replace(A, memory="play", width=w) for w in (1.0, 2.0)]
-    selection = selected(sessions, terms, alone=True, stands_alone=stands_alone)
-    every = [LINE, *terms]
-    by_squares = line.ordinary(every, sessions)[1:]
-    likely = line.shrunk(selection.regression, every)[1:]
-    assert likely.shape == (2, 3) and np.abs(likely - by_squares).max() > 1e-3
-    expected = by_squares if stands_alone else likely
-    assert line.deployed(selection)[1][1:] == pytest.approx(expected)
 
 
 # --- smooth curves ---

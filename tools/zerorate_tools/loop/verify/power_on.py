@@ -31,12 +31,6 @@ class PowerOn:
     scored: np.ndarray
     channels: tuple[str, ...]
 
-    @property
-    def tick_weight(self) -> np.ndarray:
-        """(ticks,) samples that count in the blocks' rates."""
-        assert self.session.tick_weight is not None, "a session of a recording has it"
-        return self.session.tick_weight
-
     def frames(self) -> Iterator[Frames]:
         """All samples, in batches, without the steps of the bias."""
         opened = open_recording(self.path, keep_gaps=True)
@@ -63,7 +57,9 @@ class PowerOn:
 
     def block_means(self, ticks: np.ndarray) -> np.ndarray:
         """(n, 3) means of (ticks, 3), NaN where there are none, over the ticks that count."""
-        weight = np.where(np.isfinite(ticks[:, 0]), self.tick_weight, 0.0)
+        counted = self.session.tick_weight
+        assert counted is not None, "a session of a recording has it"
+        weight = np.where(np.isfinite(ticks[:, 0]), counted, 0.0)
         return block_means(ticks, weight, self.session.blocks)
 
     def by_blocks(self) -> Iterator[tuple[int, Frames]]:
