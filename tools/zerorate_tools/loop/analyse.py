@@ -94,11 +94,7 @@ def _left_dps(analysis: Analysis, motion: InMotion, logs: Logs | None) -> float:
 
 
 def _look(
-    sessions: list[Session],
-    at: int,
-    gate: GateReport,
-    motion: InMotion,
-    logs: Logs | None,
+    sessions: list[Session], at: int, gate: GateReport, motion: InMotion, logs: Logs | None
 ) -> Analysis:
     """Effects of sessions, steps taken out of them or not, and what they are worth."""
     taken = len(slots_of(motion))

@@ -7,7 +7,7 @@ decay.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -58,6 +58,10 @@ class Term:
         if filled.get("table"):
             filled["table"] = tuple(filled["table"])
         return cls(**filled)
+
+
+#: Terms that stand side by side.
+Terms = Sequence[Term]
 
 
 def first_order_lag(u: np.ndarray, lag_s: float, tick_s: float) -> np.ndarray:

@@ -7,13 +7,12 @@ is the mean over all of them (`fit/shrunk.py`; Rasmussen and Williams, Gaussian 
 Machine Learning, 2006, 2.7).
 """
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from ...model.model import TABLE_POINTS
-from ...model.term import Term
+from ...model.term import Term, Terms
 from ..read.sessions import block_basis
 from .shrunk import shrink
 from .smooth import LENGTHS, by_likelihood, matern
@@ -35,12 +34,12 @@ def parts(term: Term) -> tuple[Term, ...]:
     return tuple(replace(term, table=tuple(table.tolist())) for table in tables)
 
 
-def is_curve(terms: Sequence[Term]) -> bool:
+def is_curve(terms: Terms) -> bool:
     """Whether terms are the parts of one curve that is still to be told."""
     return len(terms) > 1 and all(t.table for t in terms)
 
 
-def draw(regression, beside: Sequence[Term], term: Term) -> tuple[Term, float]:
+def draw(regression, beside: Terms, term: Term) -> tuple[Term, float]:
     """The term with the curve that the recordings tell beside other terms, in one form for all
     axes; and the share of the squares that is lost where these follow curves of different forms."""
     each = [replace(term, table=tuple(point.tolist())) for point in np.eye(TABLE_POINTS)]

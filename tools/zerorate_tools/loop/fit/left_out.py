@@ -1,10 +1,8 @@
 """Does a candidate predict sessions that its fit did not see?"""
 
-from collections.abc import Sequence
-
 import numpy as np
 
-from ...model.term import Term
+from ...model.term import Terms
 from .free_curve import is_curve
 from .shrunk import has_play_operators, shrink
 
@@ -13,7 +11,7 @@ from .shrunk import has_play_operators, shrink
 _SPREAD = 3.0
 
 
-def precision_of(regression, g, base, terms: Sequence[Term], own: slice) -> np.ndarray:
+def precision_of(regression, g, base, terms: Terms, own: slice) -> np.ndarray:
     """(A, J) of coefficients about zero, over the white part of the noise: of the own ones of a
     candidate wide, as large as all sessions show them; of the parts of a curve, and of play
     operators, as large as is likely.
@@ -30,7 +28,7 @@ def precision_of(regression, g, base, terms: Sequence[Term], own: slice) -> np.n
     return np.where(shrunk > 0, shrunk, out)
 
 
-def of_plays(g, scale: np.ndarray, terms: Sequence[Term]) -> np.ndarray:
+def of_plays(g, scale: np.ndarray, terms: Terms) -> np.ndarray:
     """(A, J) precision of play operators among terms, as `precision_of`; zero of all else."""
     if not has_play_operators(terms):
         return np.zeros((scale.shape[1], g.zz.shape[-1]))

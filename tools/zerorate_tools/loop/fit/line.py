@@ -5,11 +5,11 @@ The loop's effects are fitted by generalised least squares; what is learned on t
 before and after are both judged with an ordinary least-squares line on the rates less the effects.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 
 import numpy as np
 
-from ...model.term import Term
+from ...model.term import Term, Terms
 from ..read.sessions import block_basis
 from .regression import Regression, predicted
 from .shrunk import has_play_operators, shrink
@@ -26,7 +26,7 @@ def is_slope(term: Term) -> bool:
     return term.source == "temp" and np.isfinite(term.lo) and plain and alone
 
 
-def less_slope(straight: Sequence[Term], terms: Sequence[Term]) -> tuple[Term, ...]:
+def less_slope(straight: Terms, terms: Terms) -> tuple[Term, ...]:
     """The line that is fitted beside terms: none where one of them is the slope."""
     return () if any(is_slope(t) for t in terms) else tuple(straight)
 
@@ -54,7 +54,7 @@ def ordinary(terms, sessions, effects=(), coefficients=None) -> np.ndarray:
     return np.linalg.lstsq(np.vstack(x) / scale, np.vstack(y), rcond=1e-12)[0] / scale[:, None]
 
 
-def shrunk(regression: Regression, terms: Sequence[Term]) -> np.ndarray:
+def shrunk(regression: Regression, terms: Terms) -> np.ndarray:
     """(terms, 3) dps per unit of terms with play operators among them, beside the noise's colour,
     their weights as large as is likely."""
     with regression.in_sensor_axes():
@@ -63,7 +63,7 @@ def shrunk(regression: Regression, terms: Sequence[Term]) -> np.ndarray:
 
 
 def by_axis(
-    fit: Callable[[list[Term]], np.ndarray], terms: Sequence[Term], applied: np.ndarray
+    fit: Callable[[list[Term]], np.ndarray], terms: Terms, applied: np.ndarray
 ) -> np.ndarray:
     """(terms, 3) dps per unit: on every axis those that are applied to it, fitted without others.
 
@@ -77,7 +77,7 @@ def by_axis(
     return out
 
 
-def with_line(straight: Sequence[Term], terms: Sequence[Term], applied: np.ndarray) -> np.ndarray:
+def with_line(straight: Terms, terms: Terms, applied: np.ndarray) -> np.ndarray:
     """(line and terms, 3) of zero and one: the line is applied where no slope is."""
     slopes = [row for t, row in zip(terms, applied) if is_slope(t)]
     line = np.ones(3) - np.max(slopes, axis=0, initial=0.0)

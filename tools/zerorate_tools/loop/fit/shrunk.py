@@ -8,13 +8,12 @@ all sizes and colours, not the likeliest (Rasmussen and Williams, Gaussian Proce
 Learning, 2006, 2.7).
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
 
-from ...model.term import Term
+from ...model.term import Terms
 from .cross_products import CrossProducts
 from .likelihood import TINY
 from .noise import LOG_PRIOR
@@ -25,7 +24,7 @@ SIZES = np.r_[1e-3, 10.0 ** np.arange(-1.0, 4.1, 0.5)]
 _OF_SQUARES = (1e-3, 0.1, 0.3, 1.0)
 
 
-def has_play_operators(terms: Sequence[Term]) -> bool:
+def has_play_operators(terms: Terms) -> bool:
     """Whether some terms are play operators."""
     return any(t.memory == "play" for t in terms)
 
@@ -42,7 +41,7 @@ class Shrunk:
 
 
 def shrink(
-    g: CrossProducts, scale: np.ndarray, terms: Sequence[Term], own=None, alike: bool = True
+    g: CrossProducts, scale: np.ndarray, terms: Terms, own=None, alike: bool = True
 ) -> Shrunk:
     """Terms fitted to products of them, which are the first of the columns.
 
@@ -80,7 +79,7 @@ def _groups(terms, columns: int, own: slice | None) -> list[np.ndarray]:
     return [np.array(powers) == p for p in sorted({*powers} - {0})]
 
 
-def evidence(regression, terms: Sequence[Term], candidate: Sequence[Term]) -> float:
+def evidence(regression, terms: Terms, candidate: Terms) -> float:
     """Nats by which a candidate of any size is likelier beside terms than none."""
     every, own = [*terms, *candidate], slice(len(terms), None)
     return shrink(regression.cross_products(every), regression.scale, every, own).nats

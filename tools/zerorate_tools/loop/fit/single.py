@@ -16,7 +16,7 @@ import numpy as np
 from scipy.ndimage import binary_dilation
 
 from ...model.effects import is_free
-from ...model.term import Term, play
+from ...model.term import Term, Terms, play
 from ..read.sessions import Session
 from .free_curve import draw
 from .line import by_axis, ordinary, shrunk, with_line
@@ -125,9 +125,7 @@ class PiecesByLine:
         left = [fold == k for k in range(fold.max() + 1)]
         self.parts = [_only(self.session, ~binary_dilation(one, near)) for one in left]
 
-    def __call__(
-        self, straight: Sequence[Term], found: Sequence[Term], candidate: Sequence[Term]
-    ) -> np.ndarray:
+    def __call__(self, straight: Terms, found: Terms, candidate: Terms) -> np.ndarray:
         """(folds,) nats by which each turn's pieces are better predicted with the candidate."""
         before, after = (
             self._squares(self.residual(straight, terms)) for terms in (found, [*found, *candidate])
@@ -136,7 +134,7 @@ class PiecesByLine:
         return nats(before, after, counted)
 
     def residual(
-        self, straight: Sequence[Term], terms: Sequence[Term], applied: np.ndarray | None = None
+        self, straight: Terms, terms: Terms, applied: np.ndarray | None = None
     ) -> np.ndarray:
         """(n, 3) dps, each block by a fit that has not seen it; NaN where there is no rate.
 

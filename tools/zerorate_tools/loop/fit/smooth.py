@@ -13,7 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...model.term import Term
+from ...model.term import Terms
 from ..read.sessions import Session, block_basis
 from .likelihood import TINY
 from .shrunk import SIZES
@@ -24,7 +24,7 @@ LENGTHS = (0.05, 0.1, 0.2, 0.4, 0.8)
 _POINTS = 3
 
 
-def curve_of(terms: Sequence[Term]) -> list[int]:
+def curve_of(terms: Terms) -> list[int]:
     """Which terms are one slope and its bends, two and more; whoever makes such puts the bends at
     even distances."""
     bent = [i for i, t in enumerate(terms) if t.knot is not None and np.isfinite(t.lo)]
@@ -35,7 +35,7 @@ def curve_of(terms: Sequence[Term]) -> list[int]:
     return []
 
 
-def smooth(terms: Sequence[Term], own: Sequence[int], sessions: Sequence[Session]) -> np.ndarray:
+def smooth(terms: Terms, own: Sequence[int], sessions: Sequence[Session]) -> np.ndarray:
     """(terms, 3) dps per unit by least squares, an offset a session, those of a slope and its bends
     (`curve_of`) by the curve nearest to which they are."""
     corners = _corners([terms[i] for i in own])
@@ -62,7 +62,7 @@ def _between(degc: np.ndarray, at: np.ndarray) -> np.ndarray:
 
 
 def _curve(
-    at: np.ndarray, beside: Sequence[Term], sessions: Sequence[Session]
+    at: np.ndarray, beside: Terms, sessions: Sequence[Session]
 ) -> tuple[np.ndarray, np.ndarray]:
     """(points, 3) dps of the straight line and a smooth deviation from it, and (terms, 3) dps per
     unit of what is beside."""

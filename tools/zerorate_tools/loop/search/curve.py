@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...model.model import MOST_SLOTS
-from ...model.term import Term
+from ...model.term import Term, Terms
 from ..fit.line import less_slope
 from ..fit.regression import Regression
 from ..fit.single import LEAST_OF_A_PIECE, PIECES, PiecesByLine
@@ -41,7 +41,7 @@ def powers(pool: Iterable[Candidate]) -> tuple[Term, ...]:
     return tuple(first.values())
 
 
-def smooth_curve(sessions: list[Session], line: Sequence[Term], taken: int) -> list[Candidate]:
+def smooth_curve(sessions: list[Session], line: Terms, taken: int) -> list[Candidate]:
     """One with a bend in every slot that is not taken; none without temperature, or slots.
 
     line: over temperature, or nothing.
@@ -66,7 +66,7 @@ class ByPieces:
     """
 
     regression: Regression
-    line: Sequence[Term]
+    line: Terms
     pool: Sequence[Candidate]
     judged: PiecesByLine
     taken: int

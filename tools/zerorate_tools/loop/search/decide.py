@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.stats import chi2
 
-from ...model.term import Term
+from ...model.term import Terms
 from ..fit.left_out import gains
 from ..fit.noise import NATS
 from ..fit.single import PiecesByLine
@@ -42,11 +41,7 @@ class Decision:
     tried: float = 1.0
 
     def on_pieces(
-        self,
-        judged: PiecesByLine,
-        straight: Sequence[Term],
-        found: Sequence[Term],
-        candidate: Sequence[Term],
+        self, judged: PiecesByLine, straight: Terms, found: Terms, candidate: Terms
     ) -> Decision:
         """The same, unless pieces left out do not speak for the candidate."""
         gain = judged(straight, found, candidate)

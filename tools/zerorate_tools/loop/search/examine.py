@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from ...model.term import Term
+from ...model.term import Terms
 from ..fit.common_cause import RARE
 from ..fit.line import less_slope, ordinary
 from ..fit.regression import predicted
@@ -35,11 +35,7 @@ class Examiner:
         self.singles = [c.terms[0] for c in self.pool if len(c.terms) == 1]
 
     def examine(
-        self,
-        candidate: Candidate,
-        straight: Sequence[Term],
-        found: Sequence[Term],
-        nuisances: Sequence[Term],
+        self, candidate: Candidate, straight: Terms, found: Terms, nuisances: Terms
     ) -> Found | tuple[str, str]:
         """The effect where its parameters fit best; or its label, and why it is refused.
 
@@ -51,17 +47,11 @@ class Examiner:
         decision = self._decision(best, told, straight, found, nuisances)
         return Found(told, decision) if decision.accepted else (best.label, decision.reason)
 
-    def accepts(
-        self,
-        told: Candidate,
-        straight: Sequence[Term],
-        found: Sequence[Term],
-        nuisances: Sequence[Term],
-    ) -> bool:
+    def accepts(self, told: Candidate, straight: Terms, found: Terms, nuisances: Terms) -> bool:
         """Whether an effect passes whose parameters are refined, its curve drawn, already."""
         return self._decision(told, told, straight, found, nuisances).accepted
 
-    def is_idle(self, c: Candidate, rest: Sequence[Term]) -> bool:
+    def is_idle(self, c: Candidate, rest: Terms) -> bool:
         """Whether the rest of the terms explain what an effect was taken for."""
         if self.testing.is_by_time(c):
             chance = drift_test.chance(self.regression, rest, c.terms)
@@ -97,7 +87,7 @@ class Examiner:
         return decision.on_pieces(judged, *beside, best.terms)
 
 
-def cancels(sessions: Sequence[Session], beside: Sequence[Term], terms: Sequence[Term]) -> bool:
+def cancels(sessions: Sequence[Session], beside: Terms, terms: Terms) -> bool:
     """Whether terms are far larger than the error that they explain: then they only stand against
     others, as a start's decay against a warm-up, and not at another power-on."""
     without = _squares(sessions, beside, ordinary(beside, sessions) if beside else (), True)

@@ -14,7 +14,7 @@ from math import comb
 import numpy as np
 
 from ...model.model import MOST_PLAYS
-from ...model.term import Term, play
+from ...model.term import Term, Terms, play
 from ..fit.likelihood import TINY
 from ..fit.noise import NATS
 from ..fit.regression import Regression
@@ -67,10 +67,7 @@ def is_like_hysteresis(straight, beside, best: Candidate, pool, sessions: list[S
 
 
 def best_hysteresis(
-    sessions: Sequence[Session],
-    straight: Sequence[Term],
-    beside: Sequence[Term],
-    judged: PiecesByLine,
+    sessions: Sequence[Session], straight: Terms, beside: Terms, judged: PiecesByLine
 ) -> tuple[Candidate | None, float]:
     """The sum of play operators that predicts best what is left out, and the nats that it gains;
     None where none does better.
@@ -90,7 +87,7 @@ def best_hysteresis(
 
 def of_one_recording(
     regression: Regression,
-    straight: Sequence[Term],
+    straight: Terms,
     bends: Sequence[tuple[Term, ...]],
     pool: Sequence[Candidate],
     judged: PiecesByLine,
@@ -193,7 +190,7 @@ def _some_of(session: Session) -> np.ndarray:
 class _Fits:
     """Least squares over the blocks of some sessions, an offset each, beside other terms."""
 
-    def __init__(self, sessions: Sequence[Session], beside: Sequence[Term]) -> None:
+    def __init__(self, sessions: Sequence[Session], beside: Terms) -> None:
         self._sessions = sessions
         self._span = self._lo, self._hi, self._centre = span_of(sessions)
         self._columns: dict[tuple[float, int], np.ndarray] = {}

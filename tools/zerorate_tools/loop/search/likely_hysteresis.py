@@ -12,7 +12,7 @@ from operator import itemgetter
 
 import numpy as np
 
-from ...model.term import Term
+from ...model.term import Term, Terms
 from ..fit.noise import NATS
 from ..fit.regression import Regression
 from ..fit.shrunk import evidence
@@ -27,7 +27,7 @@ from .selection import Found, fits_in_slots
 _FINEST, _APART = (0.0125, 0.025, 0.05), 2.3
 
 
-def likeliest(regression: Regression, terms: Sequence[Term]) -> tuple[Candidate | None, float]:
+def likeliest(regression: Regression, terms: Terms) -> tuple[Candidate | None, float]:
     """The likeliest hysteresis beside terms, and the nats by which it is likelier than none; None
     where the courses of temperature can show none, or do not.
     """
@@ -39,11 +39,7 @@ def likeliest(regression: Regression, terms: Sequence[Term]) -> tuple[Candidate 
 
 
 def of_a_pair(
-    regression: Regression,
-    straight: Sequence[Term],
-    bend: Sequence[Term],
-    pool: Sequence[Candidate],
-    taken: int,
+    regression: Regression, straight: Terms, bend: Terms, pool: Sequence[Candidate], taken: int
 ) -> tuple[Found | None, str]:
     """The hysteresis that one recording shows, or why not; another has the last word.
 

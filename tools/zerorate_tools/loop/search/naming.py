@@ -1,13 +1,13 @@
 """The name of every effect found, and the posterior of what may stand in its place."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 from scipy.special import logsumexp
 
 from ...model.effects import is_free
-from ...model.term import Term
+from ...model.term import Terms
 from ..fit.free_curve import parts
 from ..fit.line import is_slope
 from ..fit.regression import Regression, predicted
@@ -24,11 +24,11 @@ _OF_POSE = ("linear-acceleration", "squared-acceleration")
 
 def name_found(
     regression: Regression,
-    straight: Sequence[Term],
+    straight: Terms,
     found: list[Found],
     pool: list[Candidate],
     bends: int,
-    passes: Callable[[Candidate, Sequence[Term]], bool],
+    passes: Callable[[Candidate, Terms], bool],
 ) -> None:
     """Make each effect, in place, the likeliest of the candidates in its place that pass.
 

@@ -1,6 +1,5 @@
 """The parameters of a candidate between the points of its grid."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -8,12 +7,12 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from ...model.effects import DELAY_STEP_S, is_free
-from ...model.term import Term
+from ...model.term import Terms
 from ..fit.free_curve import draw
 from .catalogue import MARGIN, REFINED, Candidate
 
 
-def drawn(regression, beside: Sequence[Term], candidate: Candidate) -> Candidate:
+def drawn(regression, beside: Terms, candidate: Candidate) -> Candidate:
     """The candidate, with its curve told by the recordings where any curve will do."""
     first = candidate.terms[0]
     if not (candidate.is_free or len(candidate.terms) == 1 and is_free(first)):

@@ -1,12 +1,11 @@
 """Find an effect, add it, look again: until nothing passes."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
 
-from ...model.term import Term
+from ...model.term import Term, Terms
 from ..fit.common_cause import RARE, coherence, turned_axes
 from ..fit.line import less_slope
 from ..fit.regression import Regression
@@ -241,7 +240,7 @@ class Search:
         self.refused.append(said)
         return None
 
-    def _passes(self, c: Candidate, others: Sequence[Term]) -> bool:
+    def _passes(self, c: Candidate, others: Terms) -> bool:
         """Whether a candidate, its parameters refined, would be found beside other effects."""
         straight = less_slope(self.line, [*others, *c.terms])
         if not fits_in_slots([*others, *c.slots], self.taken):

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.special import softmax
 
 from ...model.model import MOST_CHANNELS, MOST_PLAYS, MOST_RINGS, MOST_SLOTS, MOST_TABLES
-from ...model.term import Term
+from ...model.term import Term, Terms
 from ..fit.line import less_slope
 from ..fit.noise import NATS
 from ..fit.regression import Regression
@@ -101,7 +101,7 @@ class Selection:
         return [t for f in self.found for t in f.candidate.terms]
 
 
-def fits_in_slots(terms: Sequence[Term], taken: int = 0) -> bool:
+def fits_in_slots(terms: Terms, taken: int = 0) -> bool:
     """Whether the firmware has room for terms, a slot each, beside slots that motion needs.
 
     A play operator and its square have a place of their own.

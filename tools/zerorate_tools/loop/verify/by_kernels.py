@@ -10,7 +10,7 @@ from functools import partial
 import numpy as np
 
 from ...model import CannotDeploy, Model, Slot, drafted
-from ...model.term import Term
+from ...model.term import Terms
 from ...recordings import Scales
 from ...replay.samples import Frames
 from ..fit.single import PiecesByLine, is_instant
@@ -41,7 +41,7 @@ class PiecesByKernels(PiecesByLine):
         self.power_on, self._scales = power_on, scales
 
     def residual(
-        self, straight: Sequence[Term], terms: Sequence[Term], applied: np.ndarray | None = None
+        self, straight: Terms, terms: Terms, applied: np.ndarray | None = None
     ) -> np.ndarray:
         """(n, 3) dps, each block by a firmware that has not learned it; all NaN where the firmware
         cannot hold the terms."""
