@@ -13,7 +13,7 @@ from .noise import LOG_PRIOR
 #: Of a diagonal, so that columns all but alike have an inverse.
 TINY = 1e-10
 #: Share of a column's squares that nuisances must leave.
-_OWN = 1e-6
+LEAST_OWN = 1e-6
 
 
 def _inverse(zz: np.ndarray) -> np.ndarray:
@@ -109,7 +109,7 @@ def _gain(xx: np.ndarray, whole: np.ndarray, xy: np.ndarray) -> np.ndarray:
     of their columns, and whole: of these; xy: (G, K, P) with the residual."""
     if xx.shape[-1] == 1:
         one, own, y = xx[..., 0, 0], whole[..., 0, 0], xy[..., 0]
-        return np.where(one > _OWN * own, y**2 / np.maximum(one, 1e-300), 0.0)
+        return np.where(one > LEAST_OWN * own, y**2 / np.maximum(one, 1e-300), 0.0)
     size = np.sqrt(np.maximum(np.einsum("gkpp->gkp", whole), 1e-300))
     unit = xx / (size[..., :, None] * size[..., None, :]) + TINY * np.eye(xx.shape[-1])
     y = xy / size

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.stats import chi2, norm
 
 from ...model.term import Term
+from ..fit.likelihood import LEAST_OWN
 from ..fit.regression import Regression
 from ..read.sessions import block_basis
 from . import drift_test
@@ -110,7 +111,7 @@ def _information(g, base, scale):
         w = scale[:, a] ** -2.0
         xz, xx = np.tensordot(w, g.xz[:, i].squeeze(2), 1), w @ g.xx[:, i].squeeze((2, 3))
         left = xx - np.einsum("ki,ij,kj->k", xz, base.inverse[a][i], xz)
-        total += np.where(left > 1e-6 * xx, left, 0.0) / base.variance[a]
+        total += np.where(left > LEAST_OWN * xx, left, 0.0) / base.variance[a]
     return total
 
 
