@@ -26,7 +26,7 @@ from zerorate_tools.loop.search import (
     refine,
     step_places,
 )
-from zerorate_tools.loop.search.catalogue import Candidate, candidates, ranges, varies
+from zerorate_tools.loop.search.catalogue import MARGIN, Candidate, candidates, ranges, varies
 from zerorate_tools.loop.search.examine import cancels
 from zerorate_tools.loop.search.multiple_testing import MultipleTesting
 from zerorate_tools.loop.search.selection import Found, Selection, fits_in_slots
@@ -334,6 +334,16 @@ def test_a_hysteresis_of_a_pair_is_likelier_than_what_is_simpler(
         assert asked == [((D,), (TEMP,)), ((D, TEMP), (A,)), ((D, TEMP), (B,))]
 
 
+def test_forms_of_a_likely_hysteresis_span_all_sessions_temperatures():
+    made = [warm(temp=np.linspace(*ends, 50)) for ends in ((10.0, 20.0), (14.0, 30.0))]
+    every = list(likely_hysteresis._forms(made))
+    assert [[t.power for t in form] for form in every] == [[1] * 4, [1, 2] * 4] * 3
+    for form, finest in zip(every[::2], (0.0125, 0.025, 0.05)):
+        widths = 2 * 20.0 * finest * 2.3 ** np.arange(4)
+        assert [t.width for t in form] == pytest.approx(widths.tolist())
+        assert {(t.lo, t.hi, t.centre) for t in form} == {(10.0, 30.0, 18.5)}
+
+
 @pytest.mark.parametrize(
     ("gain", "rival", "p", "factor", "nats", "said"),
     [
@@ -595,6 +605,16 @@ def test_what_does_not_vary_or_was_not_recorded_is_no_candidate():
     assert of_kind(shaken, "vibration")
 
 
+def test_a_late_part_adds_lags_or_the_rate_of_temperature_times_its_slope():
+    late, lags = catalogue.late([warm()]), catalogue.lags([warm()])
+    assert [[t.lag_s for t in c.terms] for c in late] == [[1.0, 1.0], [8.0, 8.0]]
+    assert {c.terms[1].second_centre for c in late} == {lags[0].centre} == {25.0}
+    every = [(s, k, k == 2) for s in (5, 15, 45, 135, 405, 1215) for k in (1, 2)]
+    assert [(t.lag_s, t.power, t.power_first) for t in lags] == every
+    bare = replace(warm(), sources={})
+    assert catalogue.late([bare]) == [] == catalogue.lags([bare])
+
+
 # --- names ---
 
 
@@ -701,19 +721,6 @@ def test_earth_is_named_beside_what_follows_a_pose_and_is_no_larger(sessions):
 
 
 # --- refinement, slots, selections, lines ---
-
-
-def test_two_centres_are_refined_within_a_fifth_of_the_range():
-    rng = np.random.default_rng(3)
-    made = dense.made(1, 120)
-    made.sources |= {"a": rng.uniform(2, 12, 120), "b": rng.uniform(0, 2, 120)}
-    product = (made.sources["a"] - 6.0) * (made.sources["b"] - 1.15)
-    made.rate_dps[:] = rng.normal(size=(120, 3)) * 0.05 + product[:, None]
-    both = Term("a", 2.0, 12.0, 7.0, second="b", second_lo=0.0, second_hi=2.0, second_centre=1.0)
-    start = candidate(both, refine=("centre", "second_centre"))
-    found = refine.refined(Regression([made]), [], start).terms[0]
-    assert found.centre == pytest.approx(6.0, abs=0.15)
-    assert found.second_centre == pytest.approx(1.15, abs=0.03)
 
 
 def test_where_any_curve_will_do_it_is_told_by_the_recordings():
@@ -842,6 +849,22 @@ def test_what_is_refined_stays_within_what_the_firmware_and_a_recording_can_hold
         found = getattr(refine.refined(told, [], one).terms[0], name)
         assert found == pytest.approx(end, rel=0.03)
         assert least * 0.999 <= found <= most * 1.001
+
+
+BOTH = Term("a", 2.0, 12.0, 7.0, second="b", second_lo=2.0, second_hi=12.0, second_centre=7.0)
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize("name", ["knot", "centre", "second_centre"])
+def test_a_place_is_refined_by_a_fifth_of_the_range_seen_at_most(name, sign):
+    told = SimpleNamespace(
+        gains=lambda terms, trial: np.array([[sign * getattr(trial[0][0], name)]]),
+        forget=lambda term: None,
+    )
+    one = candidate(replace(BOTH, knot=7.0), refine=(name,))
+    found = getattr(refine.refined(told, [], one).terms[0], name)
+    seen = 10.0 / (1.0 + 2.0 * MARGIN)
+    assert found == pytest.approx(7.0 + sign * 0.2 * seen, abs=0.03 * seen)
 
 
 def test_quick_lines_are_of_the_samples_where_all_recordings_have_them_alike():
