@@ -113,8 +113,9 @@ AREAS = {
     # what they print is seen where they really run
     "commands": (
         [_TOOLS + "commands/"],
-        ["tools/test_words_reach.py", "tools/test_cli.py", "compare/test_compare.py",
-         "guide/test_guide.py", "replay/test_replay.py", "tools/test_model.py"],
+        ["tools/test_words_reach.py", "tools/test_commands_by_hand.py", "tools/test_cli.py",
+         "compare/test_compare.py", "guide/test_guide.py", "replay/test_replay.py",
+         "tools/test_model.py"],
     ),
     # what stands in no folder: the library's own doors, and what all share
     "tools": (

@@ -15,11 +15,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from zerorate_tools.cli import main
+from zerorate_tools.commands.demo import get_ready
 from zerorate_tools.demo import broad, demo, story
 from zerorate_tools.demo import real as by_real
 from zerorate_tools.demo.broad import trials
 from zerorate_tools.demo.real import WAYS, real
-from zerorate_tools.errors import CannotFetch, ZerorateError
+from zerorate_tools.errors import CannotFetch, MissingRuntime, ZerorateError
 from zerorate_tools.recordings import write_recording
 from zerorate_tools.runtimes import node
 from zerorate_tools.simulate import simulate
@@ -38,30 +39,17 @@ def figures(said, row):
     return [[float(n) for n in re.findall(r"-?\d+\.\d", line.replace(",", ""))] for line in lines]
 
 
-def test_what_nobody_told_the_firmware_is_found_and_named(said):
+def test_what_nobody_told_the_firmware_is_found_and_makes_it_several_times_better(said):
     assert "found: thermal-hysteresis (confirmed)" in said
-
-
-def test_the_power_on_held_out_is_several_times_better(said):
     (before,), (after,) = figures(said, "before "), figures(said, "after  ")
     assert sum(after) < sum(before) / 4
-
-
-def test_micropython_does_better_with_the_model(said):
     (without,), (with_it,) = figures(said, "without"), figures(said, "with it")
     assert sum(with_it[:3]) < sum(without) / 2
-
-
-def test_micropython_and_this_computer_agree_in_all_three_runs(said):
     assert "equal to the last bit" in said
     assert "Final states equal to those of this computer: yes." in said
 
 
-def test_an_interpreter_that_is_not_there_is_fetched(monkeypatch, tmp_path):
-    from zerorate_tools.commands.demo import get_ready
-    from zerorate_tools.errors import MissingRuntime
-
-    monkeypatch.setenv("ZERORATE_CACHE", str(tmp_path))
+def test_an_interpreter_that_is_not_there_is_fetched(cache, monkeypatch):
     monkeypatch.setenv("PATH", "")
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
     with pytest.raises(MissingRuntime, match="Node.js"):

@@ -1,10 +1,14 @@
-"""A CSV with its scales beside it, as one test wants it."""
+"""Recordings as one test wants them, and what stands in the place of a function."""
 
 import json
+from pathlib import Path
+from unittest.mock import Mock
 
+import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
+from zerorate_tools.recordings import Recording, Scales, write_recording
 
 
 @pytest.fixture
@@ -31,3 +35,25 @@ def parquet_of(tmp_path):
         return tmp_path / "x.parquet"
 
     return write
+
+
+@pytest.fixture
+def stands_in(monkeypatch):
+    """stands_in(path of a name, what it returns or raises): the Mock in its place."""
+
+    def put(path, result=None):
+        raises = isinstance(result, Exception)
+        mock = Mock(**{"side_effect" if raises else "return_value": result})
+        monkeypatch.setattr(path, mock)
+        return mock
+
+    return put
+
+
+@pytest.fixture
+def own_folder(monkeypatch, tmp_path):
+    """A folder to work in, with a recording of four samples and a program in it."""
+    monkeypatch.chdir(tmp_path)
+    columns = {name: np.arange(4) for name in ("t_us", "gx", "gy", "gz")}
+    write_recording(Recording(columns, Scales("X", 10.0, 131.0), "run"), "run.parquet")
+    Path("s.py").write_text("imu = 1")

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 from zerorate_tools.fleet import Fleet, devices_of, fleet
 from zerorate_tools.fleet.cluster import cluster, run_all
-from zerorate_tools.fleet.fleet_in_words import WAYS, scenario_in_words
-from zerorate_tools.fleet.prior import LEAST_DEVICES
+from zerorate_tools.fleet.fleet_in_words import scenario_in_words
+from zerorate_tools.fleet.prior import LEAST_DEVICES, WAYS
 from zerorate_tools.recordings import write_recording
 from zerorate_tools.simulate import simulate
 

@@ -13,6 +13,7 @@ from types import FrameType
 from typing import Any, NoReturn, TextIO
 
 from . import __version__
+from .commands.options import add_command
 from .errors import MissingLibrary, ZerorateError, os_error_in_words, printable
 
 #: Each command, in the order of the help -> the file of commands/ that holds it.
@@ -71,7 +72,6 @@ class _Printable:
         self._stream = stream
 
     def write(self, text: str) -> int:
-        """Write it printable."""
         return self._stream.write(printable(text))
 
     def __getattr__(self, name: str) -> Any:
@@ -132,7 +132,6 @@ def _commands_with(word: str, parser: argparse.ArgumentParser) -> list[str]:
 
 
 def parser() -> argparse.ArgumentParser:
-    """The parser with every sub-command."""
     top = _Parser(
         prog="zerorate",
         description="Keeps a MEMS gyroscope's zero-rate output at zero.",
@@ -141,7 +140,8 @@ def parser() -> argparse.ArgumentParser:
     top.add_argument("--version", action="version", version=f"zerorate {__version__}")
     subparsers = top.add_subparsers(metavar="COMMAND", required=True)
     for name, file in COMMANDS.items():
-        import_module(f"{__package__}.commands.{file}").PARSERS[name](subparsers)
+        import_module(f"{__package__}.commands.{file}")
+        add_command(subparsers, name)
     return top
 
 

@@ -9,56 +9,56 @@ from typing import Any
 from zerorate_i2c.settings import ACCEL_RANGES_G, GYRO_RANGES_DPS
 
 from ..errors import ZerorateError
-from .learn import add_sources
-from .options import Parser, above_zero, address_7_bits, option, switch
+from .learn import sources
+from .options import Arguments, above_zero, command, group, option, switch
 
 
-def add_record(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
-    parser = subparsers.add_parser(
-        "record",
-        help="make a recording from a board or a Linux I2C bus",
-        description="Record a chip until Ctrl-C. PORT is the serial port of a board, /dev/i2c-N, "
-        "or fake: for an emulated chip in a simulated hand. Meanwhile the samples are in "
-        "NAME.partial.csv, where they stay if the program is killed.",
-    )
-    option(parser, "port", "PORT", "/dev/ttyACM0, COM3 or /dev/i2c-1", nargs="?")
-    option(parser, "-o --out", "FILE", ".parquet, .csv or .csv.gz", Path)
-    option(parser, "--recover", "FILE", "finish the .partial.csv of a killed recording", Path)
-    option(parser, "--seconds", "S", "stop after this time", above_zero)
-    switch(
-        parser, "--guide", "say how to turn the device until its scale factors and axes are known"
-    )
-    _add_chip(parser.add_argument_group("on a Linux bus"))
-    board = parser.add_argument_group("on a board")
-    option(board, "--setup", "FILE", "a MicroPython file that makes `imu`, for other pins", Path)
-    parser.set_defaults(run=run_record)
+def _address(text: str) -> int:
+    """An address that a chip on an I2C bus may have, as 0x68; the bus keeps the others."""
+    if not 0x08 <= (address := int(text, 0)) <= 0x77:
+        raise argparse.ArgumentTypeError(f"{text} is no I2C address; they are 0x08 to 0x77")
+    return address
 
 
-#: Names of MPU6050's keywords that are options of a command.
-_CHIP = ("address", "odr_hz", "full_scale_dps", "full_scale_g", "dlpf_hz", "part")
-_RANGES = (
-    ("--dps", "gyroscope", GYRO_RANGES_DPS, "full_scale_dps"),
-    ("--g", "accelerometer", ACCEL_RANGES_G, "full_scale_g"),
+def _range(flag: str, of: str, ranges: tuple[int, ...], dest: str) -> Arguments:
+    help = f"range of the {of}: {', '.join(map(str, ranges))}"
+    return option(f"{flag} N", help, int, dest=dest, choices=ranges)
+
+
+#: Options of a chip on a Linux bus, which have the driver's own defaults.
+_CHIP = (
+    option("--address N", "I2C address of the chip (0x68)", _address),
+    option("--hz N", "samples a second (100)", above_zero, dest="odr_hz"),
+    _range("--dps", "gyroscope", GYRO_RANGES_DPS, "full_scale_dps"),
+    _range("--g", "accelerometer", ACCEL_RANGES_G, "full_scale_g"),
+    option("--dlpf-hz N", "bandwidth of the gyroscope's low-pass filter (by --hz)", above_zero),
+    option("--part NAME", "name of the part, as MPU-6500, if its id is unknown"),
 )
-
-
-def _add_chip(parser: Parser) -> None:
-    """Add the options of a chip on a Linux bus, which have the driver's own defaults."""
-    option(parser, "--address", "N", "I2C address of the chip (0x68)", address_7_bits)
-    option(parser, "--hz", "N", "samples a second (100)", above_zero, dest="odr_hz")
-    for flag, of, ranges, dest in _RANGES:
-        help = f"range of the {of}: {', '.join(map(str, ranges))}"
-        option(parser, flag, "N", help, int, dest=dest, choices=ranges)
-    filtered = "bandwidth of the gyroscope's low-pass filter (by --hz)"
-    option(parser, "--dlpf-hz", "N", filtered, above_zero)
-    option(parser, "--part", "NAME", "name of the part, as MPU-6500, if its id is unknown")
 
 
 def _chip(arguments: argparse.Namespace) -> dict[str, Any]:
     """The options of a chip that were typed, as MPU6050 takes them."""
-    return {name: v for name in _CHIP if (v := getattr(arguments, name)) is not None}
+    names = ("address", "odr_hz", "full_scale_dps", "full_scale_g", "dlpf_hz", "part")
+    return {name: v for name in names if (v := getattr(arguments, name)) is not None}
 
 
+@command(
+    "record",
+    "make a recording from a board or a Linux I2C bus",
+    option("port PORT", "/dev/ttyACM0, COM3 or /dev/i2c-1", nargs="?"),
+    option("-o --out FILE", ".parquet, .csv or .csv.gz", Path),
+    option("--recover FILE", "finish the .partial.csv of a killed recording", Path),
+    option("--seconds S", "stop after this time", above_zero),
+    switch("--guide", "say how to turn the device until its scale factors and axes are known"),
+    group("on a Linux bus", *_CHIP),
+    group(
+        "on a board",
+        option("--setup FILE", "a MicroPython file that makes `imu`, for other pins", Path),
+    ),
+    description="Record a chip until Ctrl-C. PORT is the serial port of a board, /dev/i2c-N, or "
+    "fake: for an emulated chip in a simulated hand. Meanwhile the samples are in "
+    "NAME.partial.csv, where they stay if the program is killed.",
+)
 def run_record(arguments: argparse.Namespace) -> int:
     """Record, or finish a recording; 1 where no sample came."""
     if (arguments.port is None) == (arguments.recover is None):
@@ -127,27 +127,23 @@ def _made(out: Path, result: Any) -> int:
     return 0 if result.samples else 1
 
 
-def add_watch(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
-    parser = subparsers.add_parser(
-        "watch",
-        help="show live what is learned, from a board or a growing recording",
-        description="Show rates, bias with its source and one sigma, temperature and what is "
-        "learned, until Ctrl-C. SOURCE is a growing .csv, as of `zerorate record`, the serial port "
-        "of a board, /dev/i2c-N, or fake: for an emulated chip at rest.",
-    )
-    option(parser, "source", "SOURCE", "run.csv, /dev/ttyACM0 or /dev/i2c-1")
-    option(parser, "--for", "SECONDS", "stop after this time", above_zero, dest="seconds")
-    switch(parser, "--once", "read what is there, and stop")
-    option(parser, "--every", "SECONDS", "time between two lines", above_zero)
-    switch(parser, "--plain", "print lines on a terminal too")
-    option(parser, "--model", "FILE", "an effect model to load", Path)
-    add_sources(parser)
-    switch(parser, "--own", "only read what the board's own program prints")
-    option(parser, "--plot", "FILE", "draw the bias over time at the end", Path)
-    option(parser, "--setup", "FILE", "on a board: a MicroPython file that makes `imu`", Path)
-    parser.set_defaults(run=run_watch)
-
-
+@command(
+    "watch",
+    "show live what is learned, from a board or a growing recording",
+    option("source SOURCE", "run.csv, /dev/ttyACM0 or /dev/i2c-1"),
+    option("--for SECONDS", "stop after this time", above_zero, dest="seconds"),
+    switch("--once", "read what is there, and stop"),
+    option("--every SECONDS", "time between two lines", above_zero),
+    switch("--plain", "print lines on a terminal too"),
+    option("--model FILE", "an effect model to load", Path),
+    *sources(),
+    switch("--own", "only read what the board's own program prints"),
+    option("--plot FILE", "draw the bias over time at the end", Path),
+    option("--setup FILE", "on a board: a MicroPython file that makes `imu`", Path),
+    description="Show rates, bias with its source and one sigma, temperature and what is learned, "
+    "until Ctrl-C. SOURCE is a growing .csv, as of `zerorate record`, the serial port of a board, "
+    "/dev/i2c-N, or fake: for an emulated chip at rest.",
+)
 def run_watch(arguments: argparse.Namespace) -> int:
     """Watch; 1 where no sample, or no line, ever came."""
     if arguments.own and (arguments.model or arguments.setup):
@@ -175,38 +171,31 @@ def run_watch(arguments: argparse.Namespace) -> int:
     return 0 if live else 1
 
 
-def add_run(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
-    parser = subparsers.add_parser(
-        "run",
-        help="correct continuously on a Linux board, as a service",
-        description="Read the chip, learn its bias at rest, store what is learned, and publish the "
-        "corrected samples as lines of JSON on standard output, a Unix socket, or by UDP. A line "
-        "has rate_dps (without bias), raw_dps (with it), bias_dps, accel_g, temp_degc, t_us since "
-        "the start, and gap_us if samples are missing before it. `zerorate import` reads them.",
-    )
-    option(parser, "bus", "BUS", "/dev/i2c-1, or fake: for an emulated chip")
-    option(
-        parser,
-        "--state",
-        "FILE",
-        "file for what is learned (learned.bin)",
-        Path,
-        default=Path("learned.bin"),
-    )
-    option(parser, "--socket", "FILE", "Unix socket for readers", Path)
-    option(parser, "--udp", "HOST:PORT", "send datagrams, only to this machine")
-    option(parser, "--metrics", "HOST:PORT", "serve metrics for Prometheus")
-    what = "let other machines reach --udp and --metrics"
-    switch(parser, "--remote", what)
-    _add_chip(parser)
-    option(parser, "--model", "FILE", "effect model to apply", Path)
-    parser.set_defaults(run=run_run)
-
-
 #: What opening says of a path that is something else, and stays so.
 _NO_BUS = (errno.ENOTTY, errno.EISDIR, errno.ENOTDIR)
 
 
+@command(
+    "run",
+    "correct continuously on a Linux board, as a service",
+    option("bus BUS", "/dev/i2c-1, or fake: for an emulated chip"),
+    option(
+        "--state FILE",
+        "file for what is learned (learned.bin)",
+        Path,
+        default=Path("learned.bin"),
+    ),
+    option("--socket FILE", "Unix socket for readers", Path),
+    option("--udp HOST:PORT", "send datagrams, only to this machine"),
+    option("--metrics HOST:PORT", "serve metrics for Prometheus"),
+    switch("--remote", "let other machines reach --udp and --metrics"),
+    *_CHIP,
+    option("--model FILE", "effect model to apply", Path),
+    description="Read the chip, learn its bias at rest, store what is learned, and publish the "
+    "corrected samples as lines of JSON on standard output, a Unix socket, or by UDP. A line has "
+    "rate_dps (without bias), raw_dps (with it), bias_dps, accel_g, temp_degc, t_us since the "
+    "start, and gap_us if samples are missing before it. `zerorate import` reads them.",
+)
 def run_run(arguments: argparse.Namespace) -> None:
     import signal
     import time
@@ -297,6 +286,3 @@ def _model_bytes(path: Path) -> bytes:
     from ..model import encoded, read_model
 
     return encoded(read_model(path))
-
-
-PARSERS = {"record": add_record, "watch": add_watch, "run": add_run}

@@ -8,31 +8,25 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from .options import option, switch
+from .options import argument, command, option, switch, with_actions
 
 #: The interpreter that is fetched where nobody names one.
 BY_DEFAULT = "wasm"
 
 
-def add_demo(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
-    parser = subparsers.add_parser(
-        "demo",
-        help="record, learn and correct a simulated sensor, without hardware",
-        description="Record an emulated chip on an emulated I2C bus with driver and firmware on a "
-        "real MicroPython, run `close` on the recordings, and run its model in MicroPython.",
-    )
-    switch(parser, "--real", "use a recording of the public BROAD data set (downloads 3.6 MB once)")
-    option(parser, "-o --out", "DIR", "folder to write (zerorate-demo); not with --real", Path)
+@command(
+    "demo",
+    "record, learn and correct a simulated sensor, without hardware",
+    switch("--real", "use a recording of the public BROAD data set (downloads 3.6 MB once)"),
+    option("-o --out DIR", "folder to write (zerorate-demo); not with --real", Path),
     option(
-        parser,
-        "--runtime",
-        "NAME",
+        "--runtime NAME",
         "wasm (default), x86, armhf, cpython, or the path of a MicroPython",
         default=BY_DEFAULT,
-    )
-    parser.set_defaults(run=run_demo)
-
-
+    ),
+    description="Record an emulated chip on an emulated I2C bus with driver and firmware on a real "
+    "MicroPython, run `close` on the recordings, and run its model in MicroPython.",
+)
 def run_demo(arguments: argparse.Namespace) -> int:
     """Do the whole job, or run over the public recording; exit code 2 where that was not to be had.
 
@@ -80,6 +74,7 @@ def get_ready(runtime: str) -> None:
 def run_job(arguments: argparse.Namespace) -> int:
     """Tell the whole story; exit code 1 if the interpreters disagree."""
     from .. import demo
+    from ..closing import close
     from ..compare import compare
     from ..compare.show import write_page
     from ..demo import story
@@ -94,7 +89,7 @@ def run_job(arguments: argparse.Namespace) -> int:
         first = demo.first_power_on(device, runtime)
     print(story.chapter_one(first), flush=True)
     with progress("closing the loop"):
-        result = demo.closed(device, folder)
+        result = close(list(device.logs), folder)
     print(story.chapter_two(device, result), flush=True)
     model = folder / "model.bin"
     with progress("playing the last power-on without and with the model"):
@@ -110,7 +105,6 @@ def run_job(arguments: argparse.Namespace) -> int:
 
 
 def run_real(arguments: argparse.Namespace) -> int:
-    """The firmware on a real recording, beside others."""
     from ..demo import story
     from ..demo.broad import broad_trial
     from ..demo.real import real
@@ -125,7 +119,6 @@ def run_real(arguments: argparse.Namespace) -> int:
 
 
 def draw_into(folder: Path, draw: Callable[..., None], *shown: Any) -> Path:
-    """Draw demo.png into a folder, made where it is not there."""
     from ..recordings.atomic import written_beside
 
     folder.mkdir(parents=True, exist_ok=True)
@@ -146,20 +139,14 @@ def reports(folder: Path) -> list[tuple[Path, str]]:
 
 
 _GETTABLE = ("wasm", "x86", "armhf", "x64", "rp2040")
+with_actions("runtimes", "fetch and list the MicroPython interpreters")
 
 
-def add_runtimes(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
-    parser = subparsers.add_parser("runtimes", help="fetch and list the MicroPython interpreters")
-    actions = parser.add_subparsers(metavar="ACTION", required=True)
-    getting = actions.add_parser("get", help="fetch missing interpreters into the cache")
-    getting.add_argument("names", nargs="+", choices=_GETTABLE, metavar="NAME")
-    getting.set_defaults(run=get)
-    listing = actions.add_parser("list", help="list those in the cache, and how to get the others")
-    listing.set_defaults(run=list_all)
-    node = actions.add_parser("node", help="print which Node.js and npm wasm would use")
-    node.set_defaults(run=print_node)
-
-
+@command(
+    "runtimes get",
+    "fetch missing interpreters into the cache",
+    argument("names", nargs="+", choices=_GETTABLE, metavar="NAME"),
+)
 def get(arguments: argparse.Namespace) -> int:
 
     from zerorate_tools.errors import MissingRuntime
@@ -186,6 +173,7 @@ def _fetch_emulator() -> None:
     fetch_rp2040()
 
 
+@command("runtimes list", "list those in the cache, and how to get the others")
 def list_all(arguments: argparse.Namespace) -> None:
     from zerorate_tools.errors import MissingRuntime
     from zerorate_tools.runtimes import NAMES, find
@@ -198,6 +186,7 @@ def list_all(arguments: argparse.Namespace) -> None:
             print(f"{name:8} missing: {error}")
 
 
+@command("runtimes node", "print which Node.js and npm wasm would use")
 def print_node(arguments: argparse.Namespace) -> None:
     from zerorate_tools.runtimes.node import node_command, npm_command
 
@@ -205,27 +194,24 @@ def print_node(arguments: argparse.Namespace) -> None:
     print(*npm_command())
 
 
-def add_bench(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
-    """Register the sub-command with every bench that is there."""
-    parser = subparsers.add_parser(
-        "bench",
-        help="measure what this project claims",
-        description="Measure the figures on the pages. `--quick` is a short run.",
-    )
+def _benches(parser: argparse.ArgumentParser) -> None:
+    """Add every bench that is there, or take any word where none is."""
     if find_spec("zerorate_bench") is None:
         parser.add_argument("bench", nargs="*", metavar="BENCH")
-        parser.set_defaults(run=_refuse)
     else:
         from zerorate_bench.benches import add_benches
 
         add_benches(parser)
 
 
+@command(
+    "bench",
+    "measure what this project claims",
+    _benches,
+    description="Measure the figures on the pages. `--quick` is a short run.",
+)
 def _refuse(arguments: argparse.Namespace) -> None:
     from ..errors import ZerorateError
 
     do = "unpack the source distribution and run `pip install -e '.[tools,bench]'` there"
     raise ZerorateError(f"the wheel has no benchmarks; {do}")
-
-
-PARSERS = {"demo": add_demo, "runtimes": add_runtimes, "bench": add_bench}

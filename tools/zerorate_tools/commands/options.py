@@ -1,4 +1,4 @@
-"""Options that several commands have: paths, numbers that are refused, and `--json`."""
+"""How a command is written down: its name, its options, numbers that are refused, and `--json`."""
 
 import argparse
 import dataclasses
@@ -6,17 +6,37 @@ import json
 import math
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 _MOST = 1e9
-#: A parser, or a group of one.
-Parser = argparse._ActionsContainer
+Run = Callable[[argparse.Namespace], int | None]
+Parsers: TypeAlias = "argparse._SubParsersAction[Any]"
+#: What adds arguments to a parser, or to a group of one.
+Arguments = Callable[[Any], None]
 
 
-def option(
-    parser: Parser, flags: str, metavar: str, help: str, type: Callable[..., Any] = str, **how: Any
-) -> None:
-    """Add an option, or an argument, that takes a value. flags: `-o --out`; how: as argparse."""
+def argument(*flags: str, **how: Any) -> Arguments:
+    """An argument as argparse takes it."""
+
+    def add(parser: argparse._ActionsContainer) -> None:
+        parser.add_argument(*flags, **how)
+
+    return add
+
+
+def group(title: str, *options: Arguments) -> Arguments:
+    """Options under a title of their own."""
+
+    def add(parser: argparse._ActionsContainer) -> None:
+        below = parser.add_argument_group(title)
+        for add_one in options:
+            add_one(below)
+
+    return add
+
+
+def option(words: str, help: str, type: Callable[..., Any] = str, **how: Any) -> Arguments:
+    """An option, or an argument, that takes a value. words: `-o --out FILE`; how: as argparse."""
 
     def read(text: str) -> Any:
         # what argparse would say of a ValueError has the name of a function in it
@@ -25,7 +45,8 @@ def option(
         except ValueError:
             raise argparse.ArgumentTypeError(f"{text} is no {_kind_of(text)}") from None
 
-    parser.add_argument(*flags.split(), metavar=metavar, help=help, type=read, **how)
+    *flags, metavar = words.split()
+    return argument(*flags, metavar=metavar, help=help, type=read, **how)
 
 
 def _kind_of(text: str) -> str:
@@ -37,9 +58,54 @@ def _kind_of(text: str) -> str:
     return "whole number"
 
 
-def switch(parser: Parser, flag: str, help: str) -> None:
-    """Add an option that takes no value."""
-    parser.add_argument(flag, action="store_true", help=help)
+def switch(flag: str, help: str) -> Arguments:
+    """An option that takes no value."""
+    return argument(flag, action="store_true", help=help)
+
+
+JSON = switch("--json", "print one JSON document instead of words")
+
+#: Name, of an action with that of its command before it -> what adds it to the parsers.
+_ADDED: dict[str, Callable[[Parsers], None]] = {}
+
+
+def command(
+    name: str, help: str, *options: Arguments, description: str | None = None, **how: Any
+) -> Callable[[Run], Run]:
+    """Make the function below what runs a command, or an action of one: "model show"."""
+
+    def register(run: Run) -> Run:
+        def add(parsers: Parsers) -> None:
+            parser = parsers.add_parser(
+                name.rpartition(" ")[2], help=help, description=description, **how
+            )
+            for add_one in options:
+                add_one(parser)
+            parser.set_defaults(run=run, refuse=parser.error)
+
+        _ADDED[name] = add
+        return run
+
+    return register
+
+
+def with_actions(
+    name: str, help: str, description: str | None = None, metavar: str = "ACTION"
+) -> None:
+    """Make a command of the actions that are registered with its name before theirs."""
+
+    def add(parsers: Parsers) -> None:
+        parser = parsers.add_parser(name, help=help, description=description)
+        actions = parser.add_subparsers(metavar=metavar, required=True)
+        for action in [one for one in _ADDED if one.startswith(f"{name} ")]:
+            _ADDED[action](actions)
+
+    _ADDED[name] = add
+
+
+def add_command(parsers: Parsers, name: str) -> None:
+    """Add a command, with all that it can be given, to the parsers."""
+    _ADDED[name](parsers)
 
 
 def finite(text: str) -> float:
@@ -58,16 +124,14 @@ def above_zero(text: str) -> float:
     return value
 
 
-def address_7_bits(text: str) -> int:
-    """An address that a chip on an I2C bus may have, as 0x68; the bus keeps the others."""
-    if not 0x08 <= (address := int(text, 0)) <= 0x77:
-        raise argparse.ArgumentTypeError(f"{text} is no I2C address; they are 0x08 to 0x77")
-    return address
-
-
-def add_json(parser: Parser) -> None:
-    """Add --json to a command."""
-    switch(parser, "--json", "print one JSON document instead of words")
+def setting(text: str) -> tuple[str, float]:
+    """A setting of the firmware, NAME=NUMBER."""
+    name, _, value = text.partition("=")
+    try:
+        number = float(value)
+        return name, int(number) if name in ("bins", "short", "long") else number
+    except (ValueError, OverflowError) as error:
+        raise argparse.ArgumentTypeError(f"{text}: not of the form NAME=NUMBER") from error
 
 
 def print_json(found: object) -> None:

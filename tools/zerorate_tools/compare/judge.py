@@ -147,7 +147,6 @@ class Compared:
         return Verdict(way, against, word, times)
 
     def figures(self) -> dict[str, object]:
-        """All that the table says, as numbers."""
         ways = {
             way: {
                 "error_dps": self.rms_dps(way),

@@ -24,7 +24,6 @@ class Won:
     refused: str = ""
 
     def sentence(self) -> str:
-        """What it would win, in one sentence."""
         if self.refused:
             return f"In motion: {self.refused}."
         before, after = self.tilt

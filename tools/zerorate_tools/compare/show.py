@@ -61,7 +61,6 @@ def rows(compared: Compared) -> list[tuple[str, str, str, str]]:
 
 
 def table(compared: Compared) -> str:
-    """The headline and the table, in plain text."""
     lines = [("way", "deg/s", "heading, deg/min", "against the first rest"), *rows(compared)]
     return "\n".join([compared.headline(), "", *_aligned(lines)])
 

@@ -204,7 +204,6 @@ def broad_trial(folder_url: str | None = None) -> Trial:
 
 
 def kept_in() -> Path:
-    """The folder of the cache that holds the trial."""
     return cache_folder() / "broad"
 
 

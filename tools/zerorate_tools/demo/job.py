@@ -9,14 +9,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ..closing import close
 from ..errors import ZerorateError
-from ..loop.report.result import LoopReport
 from ..recordings import Recording, read_recording, write_recording
 from ..replay import AT_REST_ALONE, replay
 from ..replay.engines import staged_packages
 from ..replay.samples import frames_in_batches
-from ..runtimes import Runtime, find
+from ..runtimes import Result, Runtime, find
 from ..simulate import load_description, simulate_sessions
 from ..simulate.schema import Description
 
@@ -77,34 +75,28 @@ def demo(
     interpreter, recording = find(runtime), read_recording(log)
     played = _play(recording, interpreter, {"model.bin": model, "learned.bin": learned})
     here = replay(recording, model=model, from_state=learned, options=AT_REST_ALONE)
+    out, lsb = np.frombuffer(played.files["out.bin"], _OUT), recording.scales.gyro_lsb_per_dps
+    if len(out) != len(recording):
+        raise ZerorateError(f"{interpreter.name} read {len(out)} samples of the recording, not all")
+    bias_dps = out["bias"] / 256.0 / lsb
     return Demo(
         recording=recording,
         runtime=interpreter.name,
-        said=played.said,
-        same_state=played.state == here.state,
-        bias_dps=played.bias_dps,
-        corrected_dps=played.corrected_dps,
+        said=played.stdout.strip(),
+        same_state=played.files["state.bin"] == here.state,
+        bias_dps=bias_dps,
+        corrected_dps=out["rates"] / lsb,
         truth_dps=truth_dps,
-        score=_score(recording, played.bias_dps, truth_dps),
+        score=_score(recording, bias_dps, truth_dps),
     )
 
 
-@dataclass(frozen=True)
-class _Played:
-    """What came back: bias_dps, corrected_dps (n, 3); said, what was printed; state, its bytes."""
-
-    bias_dps: Array
-    corrected_dps: Array
-    said: str
-    state: bytes
-
-
-def _play(recording: Recording, interpreter: Runtime, given: dict[str, Path | None]) -> _Played:
+def _play(recording: Recording, interpreter: Runtime, given: dict[str, Path | None]) -> Result:
     """Play every sample on `interpreter`, beside files of those names. Raises ZerorateError."""
     with tempfile.TemporaryDirectory(prefix="zerorate-demo-") as scratch:
         board = staged_packages(Path(scratch), ("zerorate", "zerorate_i2c", "zerorate_fakes"))
         rows = [np.c_[b.dt_us, b.frames].astype("<i4") for b in frames_in_batches(recording)]
-        result = interpreter.run(
+        return interpreter.run(
             Path(__file__).with_name("on_interpreter.py"),
             [*_CHIP, recording.scales.odr_hz],
             modules=[board],
@@ -116,16 +108,6 @@ def _play(recording: Recording, interpreter: Runtime, given: dict[str, Path | No
             heap=8 << 20,
             check=True,
         )
-    out = np.frombuffer(result.files["out.bin"], _OUT)
-    if len(out) != len(recording):
-        raise ZerorateError(f"{interpreter.name} read {len(out)} samples of the recording, not all")
-    lsb = recording.scales.gyro_lsb_per_dps
-    return _Played(
-        bias_dps=out["bias"] / 256.0 / lsb,
-        corrected_dps=out["rates"] / lsb,
-        said=result.stdout.strip(),
-        state=result.files["state.bin"],
-    )
 
 
 def _score(recording: Recording, bias_dps: Array, truth_dps: Array) -> Score:
@@ -183,11 +165,6 @@ def _axes(dps: list[float]) -> str:
 def first_power_on(device: Device, runtime: str = "wasm") -> Demo:
     """The first power-on of a device that has learned nothing yet, on MicroPython."""
     return demo(device.logs[0], runtime, device.truth_dps[0])
-
-
-def closed(device: Device, folder: Path) -> LoopReport:
-    """Close the loop over all power-ons, the last held out; what report.json holds."""
-    return close(list(device.logs), folder)
 
 
 def back_on_the_chip(device: Device, model: Path, runtime: str = "wasm") -> tuple[Demo, Demo]:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..peers import first_seconds, given, vqf_default
 from ..recordings import Recording
 from ..replay import AT_REST_ALONE, replay
 from .broad import Trial, TrueBias, rms_mdps, true_bias
@@ -49,9 +50,11 @@ def real(
     rows, said = [], ""
     for part, start_s in ((trial, WHOLE_FROM_S), (trial.in_motion(), MOTION_FROM_S)):
         recording = part.recording()
-        biases = {way: _peer(way)(recording) for way in WAYS[:2]}
+        session = [given(recording)]
+        mean = first_seconds(session)[0]
+        biases = {WAYS[0]: np.zeros_like(mean), WAYS[1]: mean}
         if find_spec("vqf") is not None:
-            biases["vqf"] = _peer("vqf")(recording)
+            biases["vqf"] = vqf_default(session)[0]
         for way, options in zip(WAYS[3:], (AT_REST_ALONE, {})):
             done = replay(recording, runtime=runtime, options=options)
             biases[way] = _biases(done.table, recording)
@@ -60,15 +63,6 @@ def real(
         first = round(start_s * trial.hz)
         rows.append({way: rms_mdps(bias[first:] - truth.bias_dps) for way, bias in biases.items()})
     return Real(trial, truth, rows[0], rows[1], said)
-
-
-def _peer(way: str) -> Callable[[Recording], NDArray[np.float64]]:
-    from ..peers import first_seconds, given, vqf_default
-
-    if way == "uncorrected":
-        return lambda recording: np.zeros((len(recording), 3))
-    peer = vqf_default if way == "vqf" else first_seconds
-    return lambda recording: peer([given(recording)])[0]
 
 
 def _biases(table: Any, recording: Recording) -> NDArray[np.float64]:

@@ -29,7 +29,6 @@ What next
 
 
 def opening(device: Device, folder: Path) -> str:
-    """What is about to be shown, on what."""
     return (
         f"A simulated MPU-6050, switched on {len(device.logs)} times, carried about and put down.\n"
         f"Its recordings are {folder / 'power-on-1.parquet'} to {device.logs[-1].name}."
@@ -37,7 +36,6 @@ def opening(device: Device, folder: Path) -> str:
 
 
 def chapter_one(shown: Demo) -> str:
-    """The chip, the bus, and what the firmware learned."""
     return "\n".join(["", "1. The firmware learns", *played(shown), *scored(shown)])
 
 
@@ -103,7 +101,6 @@ def _found(effects: list[dict[str, Any]]) -> list[str]:
 
 
 def chapter_three(before: Demo, after: Demo, model: Path) -> str:
-    """The same power-on on MicroPython, without and with the model."""
     ratio = before.score.firmware_mdps / after.score.firmware_mdps
     same = before.same_state and after.same_state
     interpreter = _interpreter(after).removeprefix("a real ")
@@ -136,7 +133,6 @@ def compared(found: Compared) -> str:
 
 
 def ending(files: list[tuple[Path, str]]) -> str:
-    """What to open, and each user's next command."""
     width = max(len(str(path)) for path, _ in files)
     looks = [f"  {str(path):{width}}   {what}" for path, what in files]
     following = _NEXT.format(zerorate=_as_typed("zerorate"), python=_as_typed("python"))

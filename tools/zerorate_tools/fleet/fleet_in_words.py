@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from .part import Part, alone, removed_mdps, scale_of
 from .population import TERMS, UNITS, Curve
+from .prior import SCENARIOS, WAYS
 
 _AXES = "xyz"
 SCHEMA = pa.schema(
@@ -79,15 +80,6 @@ def _by_axis(name: str, values: Iterable[float]) -> dict[str, float | None]:
 
 
 _FAILURES, _NAMES = 10, 8
-_SCENARIOS = {
-    "never-at-rest": "never at rest",
-    "at-rest-for-10-s": "at rest for 10 s, then moving",
-    "always-at-rest": "always at rest",
-}
-WAYS = {
-    "without": "without a prior",
-    "prior": "with the prior",
-}
 
 
 @dataclass
@@ -118,8 +110,7 @@ def in_words(fleet: Fleet) -> str:
 
 
 def scenario_in_words(name: str) -> str:
-    """A scenario of the prior's trial for people."""
-    return _SCENARIOS[name]
+    return SCENARIOS[name][0]
 
 
 def _lines(fleet: Fleet) -> Iterator[str]:
@@ -177,7 +168,7 @@ def _prior(prior: dict[str, Any]) -> Iterator[str]:
             f"{words} {_mdps(found[way]['median_mdps'])} ({_mdps(found[way]['p95_mdps'])})"
             for way, words in WAYS.items()
         )
-        yield f"  {_SCENARIOS[name]}: {both}"
+        yield f"  {scenario_in_words(name)}: {both}"
 
 
 def _mdps(value: float) -> str:

@@ -9,9 +9,10 @@ from ..numbers import figure
 from ..recordings.atomic import written_beside
 from ..report.page import rendered
 from ..report.plot import Panel, Plot, Series
-from .fleet_in_words import WAYS, scenario_in_words
+from .fleet_in_words import scenario_in_words
 from .part import Part, scale_of
 from .population import TERMS, UNITS
+from .prior import WAYS
 
 _POINTS = 40
 _MOST_LINES = 15
@@ -22,7 +23,6 @@ _ROLES = {"without": "before", "prior": "after"}
 
 
 def plots_of(report: dict[str, Any], part: Part | None) -> list[Plot]:
-    """Every plot that this fleet allows."""
     plots = []
     if part is not None and not np.isnan(part.low_degc):
         plots.append(part_curve(part))
@@ -34,7 +34,6 @@ def plots_of(report: dict[str, Any], part: Part | None) -> list[Plot]:
 
 
 def part_curve(part: Part) -> Plot:
-    """Bias over temperature, mean, spread, and some of the devices."""
     degc = np.linspace(part.low_degc, part.high_degc, _POINTS)
     mean, deviation = part.at(degc)
     basis = np.vander((degc - part.reference_degc) * scale_of(1), 3, True)
@@ -53,12 +52,8 @@ def part_curve(part: Part) -> Plot:
             series.append(Series(x=x, y=y, name="devices", role="context", size=1, **at))
             series.append(Series(x=degc, y=middle, name="the part", role="after", **at))
             x, y = _broken(degc, np.stack([middle - reach, middle + reach], axis=1))
-            look: dict[str, Any] = {
-                "name": "one deviation between devices",
-                "role": "heating",
-                "dash": "dash",
-            }
-            series.append(Series(x=x, y=y, **look, **at))
+            name = "one deviation between devices"
+            series.append(Series(x=x, y=y, name=name, role="heating", dash="dash", **at))
     return Plot(
         key="part-curve",
         title="Bias over temperature",
@@ -111,15 +106,8 @@ def _sorted(part: Part, axis: int, term: int, panel: int) -> list[Series]:
     out = [Series(x=np.repeat(rank, 3), y=bars, name="95 % interval", role="context", **at)]
     for which, name, role in ((~unusual, "a device", "after"), (unusual, "unlike others", "event")):
         if which.any():
-            said = [n for n, yes in zip(names, which) if yes]
-            look: dict[str, Any] = {
-                "name": name,
-                "role": role,
-                "mark": "points",
-                "size": 5.0,
-                "words": said,
-            }
-            out.append(Series(x=rank[which], y=own[which], **look, **at))
+            at |= {"mark": "points", "size": 5.0, "words": [n for n, of in zip(names, which) if of]}
+            out.append(Series(x=rank[which], y=own[which], name=name, role=role, **at))
     return out
 
 
@@ -157,7 +145,6 @@ def write_page(report: dict[str, Any], part: Part | None, path: Path) -> None:
 
 
 def headline(report: dict[str, Any]) -> str:
-    """The answer in one line, plain text."""
     tried = (report["prior"] or {}).get("benefit") or {"scenarios": {}}
     found = tried["scenarios"].get("at-rest-for-10-s")
     if not found:

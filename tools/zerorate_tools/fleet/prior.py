@@ -29,13 +29,13 @@ _PER_TASK = 16
 
 Task = tuple[str, str, int]
 Runner = Callable[[Callable[[Any], Any], list[Any]], Iterator[tuple[Any, Any]]]
-#: How long a device rests before it moves, and from when on its error counts, both in seconds.
+#: In words; how long a device rests before it moves, and from when on its error counts, in seconds.
 SCENARIOS = {
-    "never-at-rest": (0.0, 0.0),
-    "at-rest-for-10-s": (10.0, 10.0),
-    "always-at-rest": (np.inf, 5.0),
+    "never-at-rest": ("never at rest", 0.0, 0.0),
+    "at-rest-for-10-s": ("at rest for 10 s, then moving", 10.0, 10.0),
+    "always-at-rest": ("always at rest", np.inf, 5.0),
 }
-WAYS = ("without", "prior")
+WAYS = {"without": "without a prior", "prior": "with the prior"}
 _MOTION_DPS, _MOTION_HZ = 30.0, 0.7
 _MOST_LSB = 32767
 
@@ -56,7 +56,7 @@ def try_prior(prior: bytes, path: str, minutes: float) -> Trial:
             session, recording = still_session(near), beginning(near, minutes)
         model = Path(scratch) / "model.bin"
         model.write_bytes(prior)
-        for name, (rest_s, from_s) in SCENARIOS.items():
+        for name, (_, rest_s, from_s) in SCENARIOS.items():
             moved = moving_from(recording, rest_s)
             errors = {
                 way: _error(moved, session, file, from_s, 60 * minutes)
@@ -169,15 +169,12 @@ def _summary(found: dict[str, Any], minutes: float) -> dict[str, Any]:
         rows = [device[name] for device in found.values() if name in device]
         if rows:
             columns = {way: np.array([row[way] for row in rows]) for way in WAYS}
-            scenarios[name] = {**_errors(columns), "gain": _gain(columns), "devices": len(rows)}
+            errors = {
+                way: {"median_mdps": float(np.median(v)), "p95_mdps": float(np.quantile(v, 0.95))}
+                for way, v in columns.items()
+            }
+            scenarios[name] = {**errors, "gain": _gain(columns), "devices": len(rows)}
     return {"minutes": minutes, "devices": len(found), "folds": FOLDS, "scenarios": scenarios}
-
-
-def _errors(columns: dict[str, np.ndarray]) -> dict[str, dict[str, float]]:
-    return {
-        way: {"median_mdps": float(np.median(v)), "p95_mdps": float(np.quantile(v, 0.95))}
-        for way, v in columns.items()
-    }
 
 
 def _gain(columns: dict[str, np.ndarray]) -> dict[str, Any]:

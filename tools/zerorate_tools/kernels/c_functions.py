@@ -46,12 +46,10 @@ class Expressions:
         return text if isinstance(node, (ast.Compare, ast.BoolOp)) else f"({text})"
 
     def refused(self, node: ast.AST) -> NotKernel:
-        """The error that says which line is outside the subset."""
         problem = f"{type(node).__name__} is not in the kernel subset"
         return NotKernel(self._path, problem, row=getattr(node, "lineno", None))
 
     def problem(self, what: str) -> NotKernel:
-        """The error that says what is wrong with a kernel of this file."""
         return NotKernel(self._path, what)
 
     def binary(self, operator: ast.operator, left: str, right: str, node: ast.AST) -> str:
@@ -122,8 +120,6 @@ def kernels_in_c(
 
 
 class _Function:
-    """Writes one kernel."""
-
     def __init__(
         self, file: KernelFile, name: str, expressions: type[Expressions] = Expressions
     ) -> None:

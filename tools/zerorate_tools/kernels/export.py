@@ -3,7 +3,7 @@
 import re
 import zlib
 from array import array
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from os import PathLike
 from pathlib import Path
 
@@ -128,15 +128,17 @@ def export_c(
     sensor: rate and scales, an MPU-6050 at +-250 dps and 100 Hz by default; model: a model.bin or
     model.json of `zerorate close`, whose scales are taken instead. Raises BadModel.
     """
-    effects = EffectModel()
+    effects = None
     if model is not None:
         checked = check_model(model)
         sensor = sensor_for(checked.scales)
+        effects = EffectModel()
         effects.load(encoded(checked), sensor)
     corrector = Corrector(sensor, motion=False, gravity=False)
-    if model is not None:
+    if effects is not None:
         corrector.use_model(effects)
-    texts = {**_code(corrector, effects, model is not None), **_packages(corrector.sensor)}
+    # and what Arduino, PlatformIO, ESP-IDF and Zephyr read
+    texts = {**_code(corrector), **{name: _filled(name, corrector.sensor) for name in _PACKAGED}}
     with written_together(folder) as draft:
         for name, text in texts.items():
             (draft / name).parent.mkdir(parents=True, exist_ok=True)
@@ -144,29 +146,25 @@ def export_c(
     return [Path(folder) / name for name in texts]
 
 
-def _code(corrector: Corrector, effects: EffectModel, has_model: bool) -> dict[str, str]:
+def _code(corrector: Corrector) -> dict[str, str]:
     """Name -> text of the header, the C file and the test program."""
     state, c, dt_us = corrector.state, corrector.settings, round(1e6 / corrector.sensor.odr_hz)
-    declared = _declared(effects, has_model)
-    counts = {"STATE": len(state), "SETTINGS": len(c), "EFFECTS": len(effects.e)}
+    words, channels, pieces = _of_model(corrector.effects)
+    counts = {"STATE": len(state), "SETTINGS": len(c), "EFFECTS": EFFECTS.size}
     header = {f"{name}_WORDS": str(count) for name, count in counts.items()}
-    header |= {"EFFECTS": declared["effects"], "CHANNELS": declared["channels"]}
+    header |= {"EFFECTS": words, "CHANNELS": channels}
     last = max(STORE.numbers.values())
     header["REASONS"] = "\n".join(
         f"    ZERORATE_{name} = {number}{',' * (number < last)} /* {REASONS[number]} */"
         for name, number in STORE.numbers.items()
     )
-    source = _SOURCE.format(
-        kernels=_kernels(effects, has_model),
-        settings=", ".join(map(str, c)),
-        state=_pairs(state),
-        begin=_BEGIN_MODEL if has_model else "    (void)z;\n",
-        update=_WITH_MODEL if has_model else _BARE,
-    )
-    source += _CHANNEL.format(count=len(effects.channels), at=EFFECTS.CHANNELS) * has_model
+    source = _SOURCE.format(settings=", ".join(map(str, c)), state=_pairs(state), **pieces)
+    if corrector.effects is not None:
+        count = len(corrector.effects.channels)
+        source += _CHANNEL.format(count=count, at=EFFECTS.CHANNELS)
     return {
         "zerorate.h": _filled("zerorate.h", corrector.sensor, header),
-        "zerorate_units.h": _filled("zerorate_units.h", corrector.sensor, {}),
+        "zerorate_units.h": _filled("zerorate_units.h", corrector.sensor),
         "zerorate.c": f"{source}\n{_stored(corrector)}",
         "test/zerorate_test.c": _TEST.format(
             samples=_SAMPLES, dt_us=dt_us, crc=_crc(corrector, dt_us)
@@ -194,40 +192,30 @@ def _stored(corrector: Corrector) -> str:
     return "\n".join([*lines, "", text])
 
 
-def _packages(sensor: Sensor) -> dict[str, str]:
-    """Name -> text of what Arduino, PlatformIO, ESP-IDF and Zephyr read."""
-    return {name: _filled(name, sensor, {}) for name in _PACKAGED}
-
-
-def _filled(name: str, sensor: Sensor, more: dict[str, str]) -> str:
-    """The text of a file of this folder, its @NAMES@ replaced."""
-    text = (_FOLDER / name).read_text(encoding="utf-8")
-    values = dict(zip(("MAJOR", "MINOR", "PATCH"), __version__.split(".")))
-    scales = (sensor.gyro_lsb_per_dps, sensor.accel_lsb_per_g, sensor.temp_lsb_per_degc)
-    numbers = (sensor.odr_hz, *scales, sensor.temp_offset_degc)
-    values |= {
-        k: repr(float(v)) for k, v in zip(("ODR_HZ", "GYRO", "ACCEL", "TEMP", "OFFSET"), numbers)
-    }
-    return re.sub(
-        "@([A-Z_]+)@", lambda found: {"VERSION": __version__, **values, **more}[found[1]], text
-    )
-
-
-def _declared(effects: EffectModel, has_model: bool) -> dict[str, str]:
-    """What the header declares of a model."""
-    if not has_model:
-        return {"effects": "", "channels": ""}
+def _of_model(effects: EffectModel | None) -> tuple[str, str, dict[str, str]]:
+    """What the header declares of a model's words and channels, and what the C file does."""
+    if effects is None:
+        kernels = kernels_in_c(Kernels(), ("step", "step"))
+        return "", "", {"kernels": kernels, "begin": "    (void)z;\n", "update": _BARE}
     names = ", ".join(f"{i} {name}" for i, name in enumerate(effects.channels)) or "none"
     words = "    int32_t effects[ZERORATE_EFFECTS_WORDS]; /* the model at work: do not save it */\n"
-    return {"effects": words, "channels": _CHANNELS.format(names=names)}
-
-
-def _kernels(effects: EffectModel, has_model: bool) -> str:
-    if not has_model:
-        return kernels_in_c(Kernels(), ("step", "step"))
     entries = (("guard", "check"), ("effects", "sense"), ("step", "admit"), ("step", "finish"))
     first = f"static const int32_t first_effects[][2] = {{{_pairs(effects.e)}}};"
-    return f"{kernels_in_c(Kernels(), *entries)}\n{first}"
+    kernels = f"{kernels_in_c(Kernels(), *entries)}\n{first}"
+    pieces = {"kernels": kernels, "begin": _BEGIN_MODEL, "update": _WITH_MODEL}
+    return words, _CHANNELS.format(names=names), pieces
+
+
+def _filled(name: str, sensor: Sensor, more: Mapping[str, str] | None = None) -> str:
+    """The text of a file of this folder, its @NAMES@ replaced."""
+    text = (_FOLDER / name).read_text(encoding="utf-8")
+    scales = (sensor.gyro_lsb_per_dps, sensor.accel_lsb_per_g, sensor.temp_lsb_per_degc)
+    numbers = (sensor.odr_hz, *scales, sensor.temp_offset_degc)
+    values = {"VERSION": __version__, **(more or {})}
+    values |= dict(zip(("MAJOR", "MINOR", "PATCH"), __version__.split(".")))
+    for key, number in zip(("ODR_HZ", "GYRO", "ACCEL", "TEMP", "OFFSET"), numbers):
+        values[key] = repr(float(number))
+    return re.sub("@([A-Z_]+)@", lambda found: values[found[1]], text)
 
 
 def _pairs(words: Iterable[int]) -> str:

@@ -24,8 +24,6 @@ class NotKernel(InFile):
 
 @dataclass(frozen=True)
 class KernelFile:
-    """One file with kernels in it."""
-
     path: Path
 
     @property
@@ -95,7 +93,6 @@ class Kernels:
 
 
 def firmware_package() -> Path:
-    """The folder of the installed `zerorate` firmware package."""
     spec = find_spec("zerorate")
     assert spec is not None and spec.origin is not None
     return Path(spec.origin).parent

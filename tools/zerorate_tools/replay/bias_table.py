@@ -39,8 +39,6 @@ def _named(codes: np.ndarray, names: tuple[str, ...]) -> pa.Array:
 
 
 class ReplayWriter(TableWriter):
-    """Writes batches to one Parquet file as they come."""
-
     def __init__(self, path: Path) -> None:
         # time never returns, and what was learned stays for long: no dictionary of those
         super().__init__(

@@ -78,7 +78,6 @@ class Replay:
         return self.table.to_pandas()
 
     def count(self, outcome: Outcome) -> None:
-        """Add a batch to the counts."""
         self.samples += len(outcome.t_us)
         _count(self.verdicts, VERDICTS, outcome.verdict)
         _count(self.sources, SOURCES, outcome.least_source)

@@ -28,14 +28,10 @@ def flicker(rng: np.random.Generator, n: int, dt_s: float, floor: np.ndarray) ->
     """
     std = np.asarray(floor, float) / np.sqrt(2.0)
     total = np.zeros((n, len(std)))
-    for tau_s in octaves_s(dt_s):
+    octaves = np.arange(max(int(np.ceil(np.log2(_OCTAVES_TO_S / dt_s))), 1))
+    for tau_s in dt_s * 2.0**octaves:
         total += gauss_markov(rng, n, dt_s, tau_s, std)
     return total
-
-
-def octaves_s(dt_s: float) -> np.ndarray:
-    """Time constants of flicker noise, s: an octave each, from a sample's to 4e4 s."""
-    return dt_s * 2.0 ** np.arange(max(int(np.ceil(np.log2(_OCTAVES_TO_S / dt_s))), 1))
 
 
 def gauss_markov(
@@ -132,16 +128,12 @@ def square(
 
 def along(clock: Clock, *, start: float, path: list[Table]) -> np.ndarray:
     """A path of ramps, holds and exponentials, as temperature's."""
-    return _path(clock.t_s, start, path)
+    return course(clock.t_s, start, path, durations(start, path))
 
 
 def constant(clock: Clock, *, value: float) -> np.ndarray:
     """One value."""
     return np.full(len(clock.t_s), float(value))
-
-
-def _path(t_s: np.ndarray, start: float, segments: list[Table]) -> np.ndarray:
-    return path(t_s, start, segments, durations(start, segments))
 
 
 CHANNELS: dict[str, Callable[..., np.ndarray]] = {
@@ -171,7 +163,7 @@ def durations(start: float, segments: Sequence[Mapping[str, Any]]) -> list[float
     return lengths
 
 
-def path(
+def course(
     t_s: np.ndarray, start: float, segments: Sequence[Mapping[str, Any]], lengths: Sequence[float]
 ) -> np.ndarray:
     """(n,) values at t_s; after the last segment the last value holds.

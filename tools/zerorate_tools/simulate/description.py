@@ -65,7 +65,6 @@ def bundled(name: str) -> Path | None:
 
 
 def bundled_names() -> list[str]:
-    """Names of the scenarios that ship with the tools."""
     return sorted(path.stem for path in (Path(__file__).parent / "scenarios").glob("*.toml"))
 
 
@@ -234,10 +233,11 @@ def _kind(name: str, kind: Callable[..., Any]) -> str:
         for option in inspect.signature(kind).parameters.values()
         if option.kind is option.KEYWORD_ONLY
     ]
-    head = f"  {name:<18} {', '.join(options)}".rstrip()
+    head = textwrap.fill(
+        f"  {name:<18} {', '.join(options)}".rstrip(), 98, subsequent_indent=" " * 21
+    )
     text = textwrap.fill(" ".join((inspect.getdoc(kind) or "").split()), 90)
-    filled_head = textwrap.fill(head, 98, subsequent_indent=" " * 21)
-    return f"{filled_head}\n{textwrap.indent(text, ' ' * 6)}\n"
+    return f"{head}\n{textwrap.indent(text, ' ' * 6)}\n"
 
 
 def _value(default: object) -> str:

@@ -75,7 +75,6 @@ def write_truth(truth: Truth, path: str | PathLike[str]) -> None:
 
 
 def read_truth(path: str | PathLike[str]) -> Truth:
-    """Read what `write_truth` wrote."""
     table = pq.read_table(path)
 
     def stacked(*names: str) -> np.ndarray:

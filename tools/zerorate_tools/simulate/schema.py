@@ -93,7 +93,6 @@ class Session:
 
     @property
     def duration_s(self) -> float:
-        """Seconds of this power-on."""
         given = self.s + 60 * self.minutes + 3600 * self.hours
         return given or sum(durations(self.start_degc, self.temperature))
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from .attitude import facing, integrate, into_body, multiply, rotation
-from .channels import CHANNELS, Channel, Clock, durations, path, seconds, stream
+from .channels import CHANNELS, Channel, Clock, course, durations, seconds, stream
 from .motion import FACES, MOTIONS, Bout, Start
 from .schema import Description, Session, Wrong, is_pair
 
@@ -44,7 +44,7 @@ def build(description: Description, number: int, seed: int) -> World:
         raise Wrong(f"session {number} has over {_MOST_SAMPLES:,} samples", do)
     n = max(int(round(duration_s / dt_s)), 1)
     t_s = np.arange(n) * dt_s
-    temp = path(t_s, session.start_degc, session.temperature, lengths)
+    temp = course(t_s, session.start_degc, session.temperature, lengths)
     rate, attitude, accel = _moved(description, session, t_s, stream(seed, number, "motion"))
     still = np.logical_not(rate.any(axis=1))
     if description.latitude_deg is not None:
