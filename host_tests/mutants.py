@@ -165,8 +165,7 @@ AREAS = {
     "replay": ([_TOOLS + "replay/"], ["replay/"]),
     "simulate": (
         [_TOOLS + "simulate/"],
-        ["tools/test_simulate.py", "tools/test_simulated_effects.py",
-         _FIGURES + "[simulated]"],
+        ["tools/test_simulate.py", _FIGURES + "[simulated]"],
     ),
     "fleet": (
         [_TOOLS + "fleet/"],

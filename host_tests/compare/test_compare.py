@@ -111,17 +111,12 @@ def test_five_rests_and_more_show_by_their_scatter_what_is_chance():
     assert word(1.0, 1.0, 1.02 * third, 0.0, 0.0) == word(1.0, 1.0, 0.0, 0.0) == "better"
 
 
-def test_heading_is_lost_about_the_vertical_or_the_worst_axis_where_nobody_knows_it():
-    theirs = np.array([[0.3, 0.0, 0.4], [0.0, 0.1, 0.0]])
-    for down, lost in (((0.0, 0.6, 0.8), (0.32, 0.06)), (None, (0.4, 0.0))):
-        compared = told(theirs, down=down)
-        rms = 60 * np.sqrt(np.mean(np.square(lost)))
-        assert compared.heading_deg_per_min(FIRST_REST) == pytest.approx(rms)
-        assert compared.verdict(FIRST_REST, FRESH).times == pytest.approx(1e-9 / rms)
-        assert compared.verdict(FRESH, FIRST_REST).times == pytest.approx(rms / 1e-9)
-    assert compared.rms_dps(FIRST_REST) == pytest.approx(np.sqrt(0.26 / 6))
-    assert "At 2 later rests it would" in compared.headline() and compared.ours == FRESH
-    assert "At 1 later rest it would" in told(theirs[:1]).headline()
+@pytest.mark.parametrize(("down", "lost"), [((0.0, 0.6, 0.8), (0.32, 0.06)), (None, (0.4, 0.0))])
+def test_heading_is_lost_about_the_vertical_or_the_worst_axis_where_nobody_knows_it(down, lost):
+    compared = told(np.array([[0.3, 0.0, 0.4], [0.0, 0.1, 0.0]]), down=down)
+    rms = 60 * np.sqrt(np.mean(np.square(lost)))
+    assert compared.heading_deg_per_min(FIRST_REST) == pytest.approx(rms)
+    assert compared.verdict(FRESH, FIRST_REST).times == pytest.approx(rms / 1e-9)
 
 
 def test_a_bias_that_stays_shows_no_difference(tmp_path):
@@ -249,11 +244,6 @@ def test_a_log_with_an_attitude_tells_the_heading_that_its_own_other_half_wins(l
     assert won.heading[1] < 0.3 * won.heading[0]
     assert won.heading[0] > 1.0
     assert "of heading" in won.sentence() and len(won.rows()) == 2
-
-
-def test_of_two_logs_each_is_judged_by_the_other(log):
-    won = matrix_of([log(1, attitude=True, minutes=1.5), log(2, minutes=1.5)])
-    assert won.heading[1] < 0.3 * won.heading[0]
 
 
 def test_right_axes_win_nothing(log):

@@ -35,14 +35,6 @@ def parts_in(out):
     return sorted((out / "parts").glob("[!.]*.parquet"))
 
 
-def test_what_is_common_is_told_from_what_is_each_devices_own(done):
-    level, slope, _ = done[0].report["effects"]
-    assert slope["verdict"][0] == "common"
-    assert "by device" in level["verdict"][2]
-    low, high = slope["ci95"][0]
-    assert low < 0.025 + 2 * 3e-4 * (done[0].report["reference_degc"] - 25) < high
-
-
 def test_the_prior_is_a_model_that_the_firmware_takes(done, data):
     path = done[1] / "prior" / "model.bin"
     assert {slot.term.source for slot in read_model(path).slots} == {"one", "temp"}

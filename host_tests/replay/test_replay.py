@@ -78,26 +78,6 @@ def test_the_bias_found_is_the_one_simulated(simulated, reference):
         assert np.sqrt(np.mean(error[later] ** 2)) < 0.020 * 131
 
 
-def test_a_cold_device_learns_from_short_rests_that_lie_degrees_apart():
-    carried = {
-        **DESCRIPTION,
-        "bias": {"b0": [4.0, -3.0, 1.5], "b1": [0.07, -0.06, 0.03]},
-        "session": [
-            {
-                "start_degc": 20.0,
-                "temperature": [{"to": 50.0, "minutes": 10}],
-                "motion": [{"kind": "rest", "s": 20}, {"kind": "hand", "s": 150, "dps": [60, 80]}],
-            }
-        ],
-    }
-    recording, truth = simulate(carried)
-    table = replay(recording).table
-    later = recording.columns["t_us"] > 340e6  # from the third rest on
-    error = np.asarray(table["bias_gx"]) - truth.bias_lsb[:, 0]
-    # each rest finds the bias 0.6 dps from where the one before left it
-    assert np.sqrt(np.mean(error[later] ** 2)) < 0.02 * 131
-
-
 def test_a_recording_cut_in_two_and_resumed_ends_in_the_same_state(simulated, reference, tmp_path):
     recording, _ = simulated
     half = len(recording.columns["t_us"]) // 2

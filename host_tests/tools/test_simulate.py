@@ -107,32 +107,6 @@ def _integrated(rate_dps, dt_s):
     return np.array(out)
 
 
-def test_poses_put_each_face_up_in_turn():
-    faces = ["+x", "-y", "-z", "+z"]
-    motion = [
-        b for f in faces for b in ({"kind": "pose", "s": 5, "face": f}, {"s": 15, "kind": "rest"})
-    ]
-    recording, _ = simulate(device(80 / 60, 50.0, every_session={"motion": motion}))
-    seen = recording.accel_g()[950::1000]
-    expected = [[1, 0, 0], [0, -1, 0], [0, 0, -1], [0, 0, 1]]
-    assert seen == pytest.approx(np.array(expected, float), abs=1e-3)
-
-
-def test_half_a_turn_of_heading_turns_the_share_of_earths_rate():
-    motion = [
-        {"kind": "rest", "s": 60},
-        {"kind": "turn", "s": 10, "deg": 180.0, "axis": "vertical"},
-    ]
-    flat = device(2, every_session={"motion": motion}, latitude_deg=48.0)
-    recording, truth = simulate(flat)
-    earth = 360 / 86164.0905
-    level, up = earth * np.cos(np.radians(48)), earth * np.sin(np.radians(48))
-    assert truth.rate_dps[0] == pytest.approx([0, level, up])
-    assert truth.rate_dps[-1] == pytest.approx([0, -level, up])
-    assert recording.scales.more["latitude_deg"] == 48.0
-    assert truth.still[:1000].all()
-
-
 def test_files_hold_the_recordings_and_the_truth_only_where_asked(tmp_path):
     sessions = device(1, sessions=2, bias={"b0": 0.5})
     files = simulate_to_files(sessions, tmp_path / "run.csv.gz", truth=tmp_path / "truth.parquet")
@@ -172,6 +146,7 @@ def test_yaml_and_toml_describe_alike(tmp_path):
         (device(sessions=10001), "sessions is 10001"),
         (device(effect=[{"kind": "magic"}]), "effect 'magic' is unknown; choose of hysteresis"),
         (device(effect=[{"dps": 1.0}]), "effect None is unknown"),
+        (device(effect=[{"kind": "drift", "rms_dps": 1, "session": 2}]), "drift does not show"),
         (device(effect=[{"kind": "kink", "at": 3}]), "effect kink"),
         (device(effect=[{"kind": "timing", "late_ms": 3}]), "effect timing.late_ms is unknown"),
         (
@@ -232,3 +207,74 @@ def test_the_warm_up_is_that_of_the_comparison(letter):
         assert (moving.std(axis=0) > 60).all()
         noise = recording.gyro_dps() - truth.rate_dps - truth.bias_lsb / 131
         assert noise.std() == pytest.approx(0.05, rel=0.02)
+
+
+UP_AND_DOWN = {
+    "start_degc": 20.0,
+    "temperature": [{"to": 50.0, "minutes": 30}, {"to": 20.0, "minutes": 30}],
+}
+SUPPLY = {"vdd_mv": {"kind": "square", "low": 3200.0, "high": 3300.0, "period_s": 600.0}}
+
+
+def effect_dps(effect, minutes=60, odr_hz=1.0, **more):
+    """What one effect adds, (n, 3) dps, and the truth it happened in."""
+    recording, truth = simulate(device(minutes, odr_hz, effect=[effect], **more))
+    return truth.bias_lsb / recording.scales.gyro_lsb_per_dps, truth
+
+
+def seconds(truth):
+    return np.arange(len(truth.temp_degc))
+
+
+def low(truth):
+    """Where the supply is at its low level."""
+    return seconds(truth) % 600 >= 300
+
+
+@pytest.mark.parametrize(
+    ("effect", "expected"),
+    [
+        ({"kind": "kink", "knee_degc": 35.0}, lambda of: np.maximum(of.temp_degc - 35, 0)),
+        ({"kind": "peak-temperature"}, lambda of: (seconds(of) > 1800) * (50 - of.temp_degc)),
+        ({"kind": "thermal-rate"}, lambda of: np.gradient(of.temp_degc) * 60),
+        ({"kind": "power-on", "tau_s": 300.0}, lambda of: np.exp(-seconds(of) / 300)),
+        ({"kind": "drift"}, lambda of: seconds(of) / 3600),
+        ({"kind": "step", "at_s": 1000.0}, lambda of: seconds(of) >= 1000),
+        ({"kind": "step", "at_degc": 30.0}, lambda of: of.temp_degc > 30),
+        ({"kind": "linear-g", "matrix": [[0, 0, -2], [0, 0, 0], [0, 0, 0]]}, lambda of: -2.0),
+        ({"kind": "supply"}, lambda of: -0.1 * low(of)),
+        ({"kind": "supply-temperature"}, lambda of: -0.1 * low(of) * (of.temp_degc - 25)),
+    ],
+)
+def test_an_effect_adds_its_waveform(effect, expected):
+    added, truth = effect_dps(
+        {**effect, "dps": [0.1, 0, 0]}, every_session=UP_AND_DOWN, channels=SUPPLY
+    )
+    assert added[:, 0] == pytest.approx(0.1 * expected(truth), abs=1e-6)
+    assert not added[:, 1:].any()
+
+
+def test_hysteresis_parts_heating_from_cooling():
+    hysteresis = {"kind": "hysteresis", "width_degc": 4.0, "dps": 0.1}
+    added, truth = effect_dps(hysteresis, every_session=UP_AND_DOWN)
+    at = np.abs(truth.temp_degc - 35) < 0.01
+    heating, cooling = added[:1800, 0][at[:1800]], added[1800:, 0][at[1800:]]
+    assert heating == pytest.approx(-0.1) and cooling == pytest.approx(0.1)
+
+
+def test_scale_errors_are_in_the_reading_and_not_in_the_true_bias():
+    motion = [{"kind": "swing", "s": 60, "dps": 100.0, "axis": "x"}]
+    matrix = [[0.03, 0, 0], [0.01, 0, 0], [0, 0, 0]]
+    scale = {"kind": "scale", "matrix": matrix, "dps": 1.0}
+    recording, truth = simulate(device(1, 50.0, effect=[scale], **moved(motion)))
+    assert (truth.bias_lsb == 0).all()
+    rate = truth.rate_dps[:, 0]
+    assert recording.gyro_dps()[:, :2] == pytest.approx(np.c_[1.03 * rate, 0.01 * rate], abs=0.004)
+
+
+def test_an_effect_of_wanted_size_has_it_over_all_sessions():
+    effect = {"kind": "thermal-rate", "rms_dps": [0.01, 0.02, 0.03]}
+    sized = device(60, 1.0, effect=[effect], every_session=UP_AND_DOWN, sessions=3)
+    parts = [truth.bias_lsb - truth.bias_lsb.mean(axis=0) for _, truth in simulate_sessions(sized)]
+    rms = np.sqrt((np.concatenate(parts) ** 2).mean(axis=0)) / 1000
+    assert rms == pytest.approx([0.01, 0.02, 0.03], rel=0.02)

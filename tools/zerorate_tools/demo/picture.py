@@ -27,21 +27,13 @@ def draw_job(first: Demo, before: Demo, after: Demo, path: Path) -> None:
         rms = f"{shown.score.firmware_mdps:.1f} mdps rms"
         axes.set_title(f"Left of it in {shown.recording.name}, {name}: {rms}", loc="left")
     bottom.set_xlabel("minutes since power-on")
-    _write(figure, path)
-
-
-def _write(figure: Any, path: Path) -> None:
     figure.tight_layout()
     figure.savefig(path, dpi=110, format="png")
     plt.close(figure)
 
 
-def _minutes(shown: Demo) -> Array:
-    return seconds(shown.recording) / 60
-
-
 def _biases(axes: Any, shown: Demo) -> None:
-    minutes = _minutes(shown)
+    minutes = seconds(shown.recording) / 60
     for i, axis in enumerate("xyz"):
         known = np.where(shown.bias_dps[:, i] == 0, np.nan, shown.bias_dps[:, i])
         axes.plot(minutes, known, color=_COLOURS[i], label=f"g{axis}")
@@ -52,9 +44,8 @@ def _biases(axes: Any, shown: Demo) -> None:
     scales = shown.recording.scales
     if scales.temp_lsb_per_degc and "temp" in shown.recording.columns:
         warm = axes.twinx()
-        warm.plot(
-            minutes, scales.temp_degc(shown.recording.columns["temp"]), color="0.75", zorder=0
-        )
+        degc = scales.temp_degc(shown.recording.columns["temp"])
+        warm.plot(minutes, degc, color="0.75", zorder=0)
         warm.set_ylabel("die temperature, degC (grey)", color="0.4")
     found = f"Bias found in {shown.recording.name} on MicroPython (dotted: the truth)"
     axes.set_title(found, loc="left")
@@ -64,15 +55,18 @@ def _legend_above(axes: Any) -> None:
     axes.legend(loc="lower right", bbox_to_anchor=(1, 1), ncol=3, fontsize=8, frameon=False)
 
 
-def _error_mdps(shown: Demo) -> Array:
-    return (shown.truth_dps - shown.bias_dps) * 1e3
+def _error_mdps(shown: Demo, from_s: float = 0.0) -> Array:
+    """(n, 3) of the samples from then on, smoothed over five seconds."""
+    error = (shown.truth_dps - shown.bias_dps)[seconds(shown.recording) >= from_s] * 1e3
+    width = max(1, int(5 * shown.recording.scales.odr_hz))
+    smooth = [np.convolve(of, np.ones(width) / width, mode="same") for of in error.T]
+    return np.stack(smooth, axis=1)
 
 
 def _left(axes: Any, shown: Demo, most: float) -> None:
-    error = _error_mdps(shown)
-    for i, axis in enumerate("xyz"):
-        smooth = _smoothed(error[:, i], shown)
-        axes.plot(_minutes(shown), smooth, color=_COLOURS[i], label=f"g{axis}")
+    minutes = seconds(shown.recording) / 60
+    for axis, smooth, color in zip("xyz", _error_mdps(shown).T, _COLOURS):
+        axes.plot(minutes, smooth, color=color, label=f"g{axis}")
     axes.axhline(0, color="0.8", linewidth=0.8, zorder=0)
     axes.set_ylim(-most, most)
     axes.set_ylabel("mdps")
@@ -80,11 +74,4 @@ def _left(axes: Any, shown: Demo, most: float) -> None:
 
 
 def _most(shown: Demo) -> float:
-    late = _error_mdps(shown)[seconds(shown.recording) >= SETTLE_S]
-    smooth = np.concatenate([_smoothed(late[:, i], shown) for i in range(3)])
-    return max(5.0, 1.3 * float(np.nanmax(np.abs(smooth))))
-
-
-def _smoothed(values: Array, shown: Demo) -> Array:
-    width = max(1, int(5 * shown.recording.scales.odr_hz))
-    return np.convolve(values, np.ones(width) / width, mode="same")
+    return max(5.0, 1.3 * float(np.nanmax(np.abs(_error_mdps(shown, SETTLE_S)))))

@@ -70,11 +70,8 @@ def scored(shown: Demo) -> list[str]:
 
 def chapter_two(device: Device, result: Mapping[str, Any]) -> str:
     """What closing the loop found, and how much better that makes the held-out power-on."""
-    first, last, holdout = (
-        device.logs[0].stem,
-        device.logs[-2].stem,
-        ", ".join(result["split"]["test"]),
-    )
+    first, last = device.logs[0].stem, device.logs[-2].stem
+    holdout = ", ".join(result["split"]["test"])
     lines = [
         "",
         "2. `close` finds the causes of the error that remains",
