@@ -79,7 +79,7 @@ def demonstrated():
         folder = Path(stack.enter_context(TemporaryDirectory()))
         Path(folder, "two.toml").write_text(_TWO_POWER_ONS, encoding="utf-8")
         stack.enter_context(mock.patch.object(job, "DESCRIPTION", folder / "two.toml"))
-        stack.enter_context(mock.patch.object(job, "find", lambda name: _InThisProcess()))
+        stack.enter_context(mock.patch.object(job, "find", lambda name: InThisProcess()))
         device = job.make_device(folder)
         analysis = reported.analysed(["temperature-polynomial", "thermal-hysteresis"])
         write_model(model_of(analysis, open_recording(device.logs[0]).scales), folder)
@@ -107,7 +107,7 @@ def _of_demo(one):
     return {**columns, "score": asdict(one.score), "same": one.same_state}
 
 
-class _InThisProcess:
+class InThisProcess:
     """An interpreter that runs a script here, in a folder of its own; one at a time."""
 
     name, _one = "cpython", Lock()

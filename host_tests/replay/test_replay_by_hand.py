@@ -1,10 +1,8 @@
 """A replay in this process: what a MicroPython is given and gives back, drawings, kept states."""
 
-import os
 import sys
 from contextlib import nullcontext
 from dataclasses import replace
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -37,6 +35,8 @@ from zerorate_tools.replay.samples import frames_in_batches
 from zerorate_tools.replay.state_in_words import words_of_file
 from zerorate_tools.simulate import simulate
 
+from ..golden.shown import InThisProcess
+
 DEVICE = {
     "sensor": {"odr_hz": 25.0},
     "bias": {"b0": [1.5, -2.0, 0.5], "b1": 0.02},
@@ -56,30 +56,20 @@ SLOTS = [
 ]
 
 
-class Here:
-    """A Runtime that runs a script in this process, in a folder of its own."""
+class Here(InThisProcess):
+    """A Runtime that runs a script in this process, and loses so many samples."""
 
     name = "here"
 
-    def __init__(self, folder, lost=0):
-        self.folder, self.lost = folder, lost
+    def __init__(self, lost=0):
+        self.lost = lost
 
-    def run(self, script, arguments, *, modules, files_in, files_out, check):
-        assert check
-        assert [(m / "zerorate" / "corrector.py").is_file() for m in modules] == [True]
-        for name, content in files_in.items():
-            data = content.read_bytes() if isinstance(content, Path) else content
-            (self.folder / name).write_bytes(data)
-        before, sys.argv = (os.getcwd(), sys.argv), ["main.py", *map(str, arguments)]
-        os.chdir(self.folder)
-        try:
-            exec(compile(script.read_text(encoding="utf-8"), str(script), "exec"), {})
-        finally:
-            os.chdir(before[0])
-            sys.argv = before[1]
-        files = {name: (self.folder / name).read_bytes() for name in files_out}
-        files["out.bin"] = files["out.bin"][: len(files["out.bin"]) - 68 * self.lost]
-        return SimpleNamespace(files=files)
+    def run(self, script, arguments, **how):
+        assert [(m / "zerorate" / "corrector.py").is_file() for m in how["modules"]] == [True]
+        ran = super().run(script, arguments, **how)
+        out = ran.files["out.bin"]
+        ran.files["out.bin"] = out[: len(out) - 68 * self.lost]
+        return ran
 
 
 @pytest.fixture(scope="module")
@@ -123,27 +113,21 @@ def played(engine, recording, model, rows=300, options=None):
 
 
 @pytest.mark.parametrize("options", [{}, {"motion": False}, {"gravity": False}])
-def test_through_files_or_compiled_the_firmware_gives_the_same(recording, model, options, tmp_path):
+def test_through_files_or_compiled_the_firmware_gives_the_same(recording, model, options):
     how = recording, None if options else model, 300, options
     ours, own_state, sizes = played(CPythonEngine(), *how)
     assert sizes == [300, 300, 300, 100]
     assert len(set(ours["source"].ravel())) > 1 and ours["quality_q8"].any()
-    for engine in (engine_here(tmp_path), NativeEngine()):
+    for engine in (InterpreterEngine(Here()), NativeEngine()):
         theirs, state, their_sizes = played(engine, *how)
         assert state == own_state and their_sizes == sizes
         for name, values in ours.items():
             assert np.array_equal(theirs[name], values), name
 
 
-def engine_here(folder, lost=0):
-    work = folder / "work"
-    work.mkdir()
-    return InterpreterEngine(Here(work, lost))
-
-
-def test_samples_that_an_interpreter_lost_are_said(recording, tmp_path):
+def test_samples_that_an_interpreter_lost_are_said(recording):
     with pytest.raises(ZerorateError, match="here lost samples"):
-        played(engine_here(tmp_path, lost=1), recording, None)
+        played(InterpreterEngine(Here(lost=1)), recording, None)
 
 
 def test_a_package_that_is_not_there_is_named(tmp_path):

@@ -3,11 +3,9 @@
 import errno
 import io
 import json
-import re
 import signal
 import sys
 from math import radians
-from pathlib import Path
 from types import SimpleNamespace
 from unittest.mock import Mock
 
@@ -293,24 +291,6 @@ def test_where_motion_shows_nothing_either_gravity_is_asked_for_if_it_was_not_th
     with pytest.raises(TooLittleRest, match="too short") as refused:
         stood_in(lsb_per_g, rests=False)
     assert ("gravity" in str(refused.value)) is (lsb_per_g is None)
-
-
-@pytest.mark.skipif(sys.platform != "linux", reason="other systems have no such limit")
-def test_each_step_may_take_so_much_beyond_what_there_is_and_no_more_afterwards():
-    import resource
-
-    def limits():
-        return resource.getrlimit(resource.RLIMIT_DATA)
-
-    before, seen = limits(), []
-    items = bounds.each_at_most((seen.append(limits()) or n for n in range(3)), 50)
-    assert [(n, limits()) for n in items] == [(n, before) for n in range(3)]
-    status = Path("/proc/self/status").read_text()
-    taken = 1024 * sum(map(int, re.findall(r"Vm(?:Data|Stk):\s*(\d+) kB", status)))
-    assert all(abs(soft - taken - (50 << 20)) < 8 << 20 for soft, _ in seen)
-    assert all(hard == before[1] for _, hard in seen)
-    with pytest.raises(MemoryError), bounds.at_most(20):
-        bytearray(1 << 30)  # of what was freed before, a heap may still hold 60 MB
 
 
 UNSEEN = np.array([[1, 0, 0], [0, 0, 1], [0, 0, 0]])
