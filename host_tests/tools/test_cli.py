@@ -1,12 +1,9 @@
 """The command line: what it lists, what it says when something is wrong, how it ends, JSON."""
 
-import io
 import json
 import os
 import subprocess
 import sys
-from contextlib import redirect_stderr, redirect_stdout
-from dataclasses import dataclass
 from types import SimpleNamespace
 from unittest.mock import Mock
 
@@ -25,26 +22,6 @@ from zerorate_tools.simulate import simulate_to_files
 SCALES = Scales("X", 1.0, 1.0)
 
 
-@dataclass
-class Ended:
-    """How a command ended: its exit code and what it printed."""
-
-    returncode: int
-    stdout: str
-    stderr: str
-
-
-def zerorate(*words):
-    """Run the command in this process."""
-    out, err = io.StringIO(), io.StringIO()
-    with redirect_stdout(out), redirect_stderr(err):
-        try:
-            code = cli.main([str(word) for word in words])
-        except SystemExit as ended:
-            code = ended.code
-    return Ended(code, out.getvalue(), err.getvalue())
-
-
 def test_the_module_runs_as_a_program_and_its_exit_code_reaches_the_shell(tmp_path):
     words = [sys.executable, "-m", "zerorate_tools.cli", "import", "none.csv", "--out", "x.csv"]
     ran = subprocess.run(words, capture_output=True, text=True)
@@ -52,10 +29,10 @@ def test_the_module_runs_as_a_program_and_its_exit_code_reaches_the_shell(tmp_pa
     assert ran.stderr == "zerorate: none.csv: no such file; name a file to import\n"
 
 
-def test_without_a_word_it_helps_and_says_where_to_begin():
-    ran = zerorate()
-    assert ran.returncode == 0
-    assert "zerorate demo" in ran.stdout
+def test_without_a_word_it_helps_and_says_where_to_begin(capsys):
+    with pytest.raises(SystemExit) as ended:
+        main([])
+    assert ended.value.code == 0 and "zerorate demo" in capsys.readouterr().out
 
 
 def test_help_imports_nothing_that_a_command_needs():
@@ -69,12 +46,12 @@ def test_help_imports_nothing_that_a_command_needs():
     assert ran.returncode == 0, ran.stderr
 
 
-def test_bad_input_ends_in_one_line_and_2(tmp_path):
+def test_bad_input_ends_in_one_line_and_2(tmp_path, capsys):
     (tmp_path / "in.csv").write_text("t_s,gx_dps,gy_dps,gz_dps\n")
-    ran = zerorate("import", tmp_path / "in.csv", "--out", tmp_path / "out.parquet")
-    assert ran.returncode == 2
-    assert ran.stderr.startswith("zerorate: ") and ran.stderr.count("\n") == 1
-    assert "in.csv" in ran.stderr and "no data row" in ran.stderr
+    assert main(["import", f"{tmp_path}/in.csv", "--out", f"{tmp_path}/out.parquet"]) == 2
+    said = capsys.readouterr().err
+    assert said.startswith("zerorate: ") and said.count("\n") == 1
+    assert "in.csv" in said and "no data row" in said
     assert [p.name for p in tmp_path.iterdir()] == ["in.csv"]
 
 
@@ -100,16 +77,16 @@ def test_a_folder_that_cannot_be_written_is_told_at_once_by_the_name_given(tmp_p
         "simulate turntable --out new.parquet --truth new.parquet",
     ],
 )
-def test_no_command_writes_over_what_it_reads_or_writes(words, tmp_path, monkeypatch):
+def test_no_command_writes_over_what_it_reads_or_writes(words, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "state.parquet").write_text("the only copy")
     with recording_writer("run.parquet", ["t_us", "gx", "gy", "gz"], SCALES) as writer:
         writer.append({name: np.arange(9) for name in ("t_us", "gx", "gy", "gz")})
     (tmp_path / "again").symlink_to(tmp_path)
     before = {p.name: p.read_bytes() for p in tmp_path.glob("*.parquet")}
-    ran = zerorate(*words.split())
-    assert ran.returncode == 2 and ran.stderr.count("\n") == 1
-    assert "written" in ran.stderr and "name" in ran.stderr
+    assert main(words.split()) == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1 and "written" in said and "name" in said
     assert {p.name: p.read_bytes() for p in tmp_path.glob("*.parquet")} == before
 
 
@@ -126,7 +103,7 @@ def running(monkeypatch):
 
 def test_an_error_of_the_bus_is_one_line(running, capsys):
     running(Mock(side_effect=OSError(5, "Input/output error", "/dev/i2c-1")))
-    assert cli.main([]) == 2
+    assert main([]) == 2
     assert capsys.readouterr().err == "zerorate: /dev/i2c-1: Input/output error\n"
 
 
@@ -137,21 +114,22 @@ def test_an_interrupt_ends_in_130_and_leaves_nothing_half_written(running, tmp_p
             raise KeyboardInterrupt
 
     running(interrupted)
-    assert cli.main([]) == 130
+    assert main([]) == 130
     assert capsys.readouterr().err == "zerorate: interrupted; nothing half-written was left\n"
     assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize(("name", "library"), [("run.ulg", "pyulog"), ("run.bin", "pymavlink")])
 def test_a_missing_library_is_said_with_a_command_that_a_shell_takes(
-    tmp_path, monkeypatch, name, library
+    tmp_path, monkeypatch, capsys, name, library
 ):
     missing = f'raise ModuleNotFoundError("not here", name="{library}")'
     (tmp_path / f"{library}.py").write_text(missing)
     monkeypatch.syspath_prepend(tmp_path)
     (tmp_path / name).write_bytes(b"ULog\x01")
-    ran = zerorate("import", tmp_path / name, "--out", tmp_path / "run.parquet")
-    assert ran.stderr.endswith(f"needs {library}, which is not installed; {adding('tools')}\n")
+    assert main(["import", f"{tmp_path}/{name}", "--out", f"{tmp_path}/run.parquet"]) == 2
+    said = capsys.readouterr().err
+    assert said.endswith(f"needs {library}, which is not installed; {adding('tools')}\n")
 
 
 @pytest.mark.parametrize(

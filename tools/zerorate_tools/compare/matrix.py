@@ -32,7 +32,9 @@ class Won:
                 f"In motion no matrix would lower the tilt error, {before:.2f} deg a minute "
                 "against gravity. It includes the device's own acceleration."
             )
-        more = "" if self.heading is None else f", and {_of(self.heading)} of heading"
+        more = ""
+        if self.heading is not None:
+            more = f", and {self.heading[1]:.2f} of {self.heading[0]:.2f} of heading"
         return (
             f"In motion the matrix of `zerorate close` would leave {after:.2f} of {before:.2f} deg "
             f"of tilt a minute{more}, on windows left out."
@@ -45,10 +47,6 @@ class Won:
         names = (WITHOUT, WITH) if self.deployed else (WITHOUT,)
         headings = [f"{h:.2f}" for h in self.heading] if self.heading else ["no attitude"] * 2
         return [(n, f"{t:.2f}", h, "") for n, t, h in zip(names, self.tilt, headings)]
-
-
-def _of(pair: tuple[float, float]) -> str:
-    return f"{pair[1]:.2f} of {pair[0]:.2f}"
 
 
 def matrix_of(logs: Sequence[str | Path]) -> Won | None:

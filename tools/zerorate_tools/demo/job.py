@@ -16,7 +16,6 @@ from ..replay.engines import staged_packages
 from ..replay.samples import frames_in_batches
 from ..runtimes import Result, Runtime, find
 from ..simulate import load_description, simulate_sessions
-from ..simulate.schema import Description
 
 SETTLE_S = 10.0
 #: Part, dps and g of the emulated chip, whose scales the simulated device has.
@@ -135,7 +134,6 @@ class Device:
     """logs: a recording a power-on; truth_dps: the true bias in each, (n, 3); hidden: what the
     firmware's frozen model, an offset and a straight line over temperature, is not told."""
 
-    name: str
     logs: list[Path]
     truth_dps: list[NDArray[np.float64]]
     hidden: list[str]
@@ -150,16 +148,13 @@ def make_device(folder: Path) -> Device:
         logs.append(folder / f"power-on-{number}.parquet")
         write_recording(recording, logs[-1])
         truths.append(truth.bias_lsb / recording.scales.gyro_lsb_per_dps)
-    return Device(described.name, logs, truths, _hidden(described))
 
+    def per_axis(dps: list[float]) -> str:
+        return " ".join(f"{1e3 * value:+g}" for value in dps)
 
-def _hidden(described: Description) -> list[str]:
-    words = [f"{e['kind']}, {_axes(e['dps'])} mdps" for e in described.effects]
-    return [*words, f"curvature, {_axes(described.bias.b2)} mdps per degC squared"]
-
-
-def _axes(dps: list[float]) -> str:
-    return " ".join(f"{1e3 * value:+g}" for value in dps)
+    hidden = [f"{e['kind']}, {per_axis(e['dps'])} mdps" for e in described.effects]
+    hidden.append(f"curvature, {per_axis(described.bias.b2)} mdps per degC squared")
+    return Device(logs, truths, hidden)
 
 
 def first_power_on(device: Device, runtime: str = "wasm") -> Demo:

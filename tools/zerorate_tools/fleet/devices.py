@@ -129,6 +129,11 @@ def is_url(place: str) -> bool:
     return _URL.match(place) is not None
 
 
+def absolute(place: str) -> str:
+    """The place, wherever the program that opens it works."""
+    return place if is_url(place) else str(Path(place).resolve())
+
+
 def urls_of(source: str) -> list[str]:
     """The recordings at a URL: a file, a glob pattern, or a folder, which is searched.
 

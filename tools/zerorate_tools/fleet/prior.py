@@ -2,7 +2,7 @@
 
 import json
 import tempfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from os import PathLike
 from pathlib import Path
@@ -20,7 +20,7 @@ from ..replay import AT_REST_ALONE, replay
 from .devices import here
 from .job import block_means, error_mdps, one_line, still_session
 from .part import Part, part_of, scale_of
-from .population import Curve
+from .population import TERMS
 
 FOLDS = 5
 LEAST_DEVICES = 10
@@ -134,7 +134,12 @@ def benefit(
         return None
     order = np.random.default_rng(1).permutation(len(names))
     fold_of = {names[i]: place % FOLDS for place, i in enumerate(order)}
-    priors = [_prior(names, curves, fold_of, fold, scales) for fold in range(FOLDS)]
+    priors = []
+    for fold in range(FOLDS):
+        rest = [(name, of) for name, of in zip(names, curves) if fold_of[name] != fold]
+        part = part_of(*zip(*rest))
+        assert part is not None
+        priors.append(encoded(prior_model(part, scales)))
     tried = [names[i] for i in order[:MOST_DEVICES]]
     tasks: list[Task] = [(name, first[name], fold_of[name]) for name in tried]
     batches = [tasks[i : i + _PER_TASK] for i in range(0, len(tasks), _PER_TASK)]
@@ -147,19 +152,6 @@ def benefit(
         failed.update({name: r for name, r in result.items() if isinstance(r, str)})
     in_order = {name: found[name] for name in tried if name in found}
     return {**_summary(in_order, minutes), "failed": failed}
-
-
-def _prior(
-    names: Sequence[str],
-    curves: Sequence[Curve],
-    fold_of: Mapping[str, int],
-    fold: int,
-    scales: Scales,
-) -> bytes:
-    rest = [i for i, name in enumerate(names) if fold_of[name] != fold]
-    part = part_of([names[i] for i in rest], [curves[i] for i in rest])
-    assert part is not None
-    return encoded(prior_model(part, scales))
 
 
 def _summary(found: dict[str, Any], minutes: float) -> dict[str, Any]:
@@ -207,16 +199,14 @@ def prior_model(part: Part, scales: Scales) -> Model:
         error = np.array([axis.mean_error[power] for axis in part.axes])
         beyond = np.maximum(0.0, mean**2 - error**2)
         value = np.divide(beyond, mean, np.zeros(3), where=mean != 0) * scale_of(power)
-        if value.any() and (power == 0 or scales.temp_lsb_per_degc):
-            slots.append(_slot(part, power, (float(value[0]), float(value[1]), float(value[2]))))
+        if not value.any() or (power and not scales.temp_lsb_per_degc):
+            continue
+        term = Term("one")
+        if power:
+            term = Term("temp", part.low_degc, part.high_degc, part.reference_degc, power)
+        x, y, z = map(float, value)
+        slots.append(Slot(term, (x, y, z), f"prior: {TERMS[power]}"))
     return build_model(slots, scales)
-
-
-def _slot(part: Part, power: int, per_unit: tuple[float, float, float]) -> Slot:
-    if power == 0:
-        return Slot(Term("one"), per_unit, "prior: level")
-    term = Term("temp", part.low_degc, part.high_degc, part.reference_degc, power)
-    return Slot(term, per_unit, f"prior: {('', 'slope', 'curvature')[power]}")
 
 
 def prior_json(part: Part) -> dict[str, Any]:

@@ -23,7 +23,7 @@ from ..recordings.guarded import read_in_safety
 from ..recordings.scales import scales_from_text
 from ..replay.engines import compiled
 from .cluster import cluster, in_batches, run_all, size_of
-from .devices import Device, is_url
+from .devices import Device, absolute, is_url
 from .fleet_in_words import Fleet, table_of
 from .job import JOBS, Job, one_line, run_batch
 from .part import Part, curve_effects, part_of, step_effects
@@ -68,7 +68,7 @@ def fleet(
     folder = Path(out)
     own = os.path.join(os.path.realpath(folder), "devices") if keep else None
     work = Job(job, options or {}, str(Path(model).resolve()) if model else None, own)
-    devices = [_absolute(device) for device in devices]
+    devices = [Device(one.name, tuple(map(absolute, one.recordings))) for one in devices]
     wanted = {device.name: work.fingerprint(device) for device in devices}
     begun = time.perf_counter()
     with cluster(scheduler, workers) as client:
@@ -89,11 +89,6 @@ def fleet(
         fleet.report = _conclude(parts.results(wanted), work, folder, minutes, client)
         fleet.conclude_s = time.perf_counter() - begun - fleet.start_s - fleet.work_s
     return fleet
-
-
-def _absolute(device: Device) -> Device:
-    places = (p if is_url(p) else str(Path(p).resolve()) for p in device.recordings)
-    return Device(device.name, tuple(places))
 
 
 def _noted(
@@ -130,7 +125,8 @@ def _conclude(
     from .plots import write_page
 
     found = list(results)
-    sensor = _main_sensor(found)
+    kinds = Counter(_kind(r["sensor"]) for r in found if r["sensor"])
+    sensor = kinds.most_common(1)[0][0] if kinds else None
     mine = [r for r in found if r["curve"] and r["sensor"] and _kind(r["sensor"]) == sensor]
     names, curves = [r["device"] for r in mine], [Curve.from_json(r["curve"]) for r in mine]
     part = part_of(names, curves)
@@ -157,11 +153,6 @@ def _conclude(
 def _kind(sensor: dict[str, Any]) -> tuple[Any, ...]:
     names = ("sensor", "gyro_lsb_per_dps", "temp_lsb_per_degc", "temp_offset_degc")
     return tuple(sensor.get(name) for name in names)
-
-
-def _main_sensor(results: Sequence[dict[str, Any]]) -> tuple[Any, ...] | None:
-    kinds = Counter(_kind(r["sensor"]) for r in results if r["sensor"])
-    return kinds.most_common(1)[0][0] if kinds else None
 
 
 def _report(

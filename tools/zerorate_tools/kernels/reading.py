@@ -6,7 +6,6 @@ file is known by its stem, wherever it lies, so that `from ..fit.line import dra
 """
 
 import ast
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from importlib.util import find_spec
@@ -54,7 +53,13 @@ class KernelFile:
     @cached_property
     def constants(self) -> dict[str, int]:
         """The names that `const(...)` gives to numbers."""
-        return dict(_constants(self.tree))
+        found = {}
+        for node in self.tree.body:
+            if isinstance(node, ast.Assign) and isinstance(node.value, ast.Call):
+                target, value = node.targets[0], node.value
+                if isinstance(target, ast.Name) and value.args:
+                    found[target.id] = ast.literal_eval(value.args[0])
+        return found
 
     def calls(self, name: str) -> list[tuple[str, str]]:
         """File and function of each kernel that the kernel calls."""
@@ -111,11 +116,3 @@ def kernel_files(package: Path) -> list[Path]:
 
 def _kernel(function: ast.FunctionDef) -> bool:
     return bool(function.returns) or any(a.annotation for a in function.args.args)
-
-
-def _constants(tree: ast.Module) -> Iterator[tuple[str, int]]:
-    for node in tree.body:
-        if isinstance(node, ast.Assign) and isinstance(node.value, ast.Call):
-            target, value = node.targets[0], node.value
-            if isinstance(target, ast.Name) and value.args:
-                yield target.id, ast.literal_eval(value.args[0])

@@ -83,7 +83,10 @@ def _moved(
     now, first, turn = _first_attitude(session, rng), 0, 0
     schedule = session.motion or [{"kind": "rest", "s": session.duration_s * 10}]
     while first < n:
-        bout = _drawn(schedule[turn % len(schedule)], rng)
+        bout = {
+            key: rng.uniform(*value) if is_pair(value) else value
+            for key, value in schedule[turn % len(schedule)].items()
+        }
         last = min(first + max(int(round((seconds(bout) or 0.0) / dt_s)), 1), n)
         start = Start(rng, np.arange(1, last - first + 1) * dt_s, dt_s, into_body(now, UP))
         moved = _bout(bout, start)
@@ -100,10 +103,6 @@ def _first_attitude(session: Session, rng: np.random.Generator) -> np.ndarray:
     lean = rng.standard_normal(3) * session.tilt_deg
     heading = rotation(np.array([0.0, 0.0, session.heading_deg]))
     return multiply(heading, multiply(facing(FACES[session.face]), rotation(lean)))
-
-
-def _drawn(bout: Mapping[str, Any], rng: np.random.Generator) -> dict[str, Any]:
-    return {key: rng.uniform(*value) if is_pair(value) else value for key, value in bout.items()}
 
 
 def _bout(bout: dict[str, Any], start: Start) -> Bout:
