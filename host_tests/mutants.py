@@ -55,7 +55,7 @@ AREAS = {
     "drivers": (
         ["drivers/zerorate_i2c/"],
         ["drivers/test_" + name for name in (
-            "mpu6050.py", "faults.py", "fifo.py", "fifo_by_hand.py", "data_ready.py",
+            "mpu6050.py", "faults.py", "fifo.py", "data_ready.py",
             "settings.py", "record_bus.py", "fake_buses.py")],
     ),
     "storage": (

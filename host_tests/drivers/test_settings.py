@@ -5,7 +5,7 @@ from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050
 from zerorate_i2c.mpu6050 import MPU6050
 from zerorate_i2c.parts import ICM20689_KIND, ICM20690_KIND, MPU6050_KIND, MPU6500_KIND
 from zerorate_i2c.self_test import self_test
-from zerorate_i2c.settings import choose_divider, choose_filter, index_of, register_settings
+from zerorate_i2c.settings import choose_divider, choose_filter, register_settings
 
 KINDS = (MPU6050_KIND, MPU6500_KIND, ICM20689_KIND, ICM20690_KIND)
 # DLPF_CFG 0 to 6, gyro: RM-MPU-6000A-00 register 26; RM-MPU-6500A-00 register 26
@@ -63,12 +63,6 @@ def test_a_rate_beyond_the_divider_is_a_value_error_that_says_the_ends(dlpf_code
     assert choose_divider(dlpf_code, base_hz / 256) == (255, base_hz / 256)
 
 
-def test_a_range_is_one_of_four():
-    assert [index_of(g, (2, 4, 8, 16), "full_scale_g") for g in (2, 4, 8, 16)] == [0, 1, 2, 3]
-    with pytest.raises(ValueError, match=r"full_scale_g is one of \(2, 4, 8, 16\), not 3"):
-        index_of(3, (2, 4, 8, 16), "full_scale_g")
-
-
 @pytest.mark.parametrize(
     "kind, gyro_config, accel_config2",
     [
@@ -122,50 +116,46 @@ def test_a_chip_is_reset_written_read_back_and_waited_for(part, start_up_ms, kep
     assert (imu.read_backs, imu.restarts) == (2, 1)
 
 
-# Codes 16 on all axes: 4096 * 0.34 * (0.92/0.34)**0.5 = 2290.8 LSB, 25 * 131 * 1.046**15 = 6429.8
-CODES_6050 = [4 << 5 | 16] * 3 + [0]
-GOOD_6050 = [2291, 2291, 2291, 0, 6430, -6430, 6430]
-# Codes 101: 2620 * 1.01**100 = 7086.6 LSB
-CODES_6500 = [101, 101, 101, 0]
-GOOD_6500 = [7087, 7087, 7087, 0, 7087, 7087, 7087]
+# Factory codes, and the response in LSB that they stand for. Codes 16 on all axes of an MPU-6050:
+# 4096 * 0.34 * (0.92/0.34)**0.5 = 2290.8 and 25 * 131 * 1.046**15 = 6429.8 LSB;
+# codes 101 of an MPU-6500 2620 * 1.01**100 = 7086.6 LSB.
+GOOD = {
+    "MPU-6050": ([4 << 5 | 16] * 3 + [0], [2291, 2291, 2291, 0, 6430, -6430, 6430]),
+    "MPU-6500": ([101, 101, 101, 0], [7087, 7087, 7087, 0, 7087, 7087, 7087]),
+}
 
 
-def make(make_bench, part, codes, response):
-    bench = make_bench(source=[[100, -200, 4000, 0, 30, -60, 10]] * 4000, part=part, linked=True)
-    bench.chip.set_self_test(codes, codes[:3], response)
-    bench.imu.configure()
-    return bench
+@pytest.fixture
+def tested(make_bench):
+    """tested(part, codes, response) -> (passed, ratios) of its self-test."""
+
+    def tested(part, codes, response):
+        rows = [[100, -200, 4000, 0, 30, -60, 10]] * 4000
+        bench = make_bench(source=rows, part=part, linked=True)
+        bench.chip.set_self_test(codes, codes[:3], response)
+        bench.imu.configure()
+        found = self_test(bench.imu)
+        assert bench.imu.check(), "the configuration is back"
+        return found
+
+    return tested
 
 
-@pytest.mark.parametrize(
-    "part, codes, response",
-    [("MPU-6050", CODES_6050, GOOD_6050), ("MPU-6500", CODES_6500, GOOD_6500)],
-)
-def test_a_good_chip_passes_with_ratios_of_one(make_bench, part, codes, response):
-    passed, ratios = self_test(make(make_bench, part, codes, response).imu)
+@pytest.mark.parametrize("part", GOOD)
+def test_a_good_chip_passes_with_ratios_of_one(tested, part):
+    passed, ratios = tested(part, *GOOD[part])
     assert passed
     assert ratios == pytest.approx([1.0] * 6, abs=0.001)
 
 
 @pytest.mark.parametrize("word", [0, 1, 2, 4, 5, 6])
-@pytest.mark.parametrize(
-    "part, codes, response",
-    [("MPU-6050", CODES_6050, GOOD_6050), ("MPU-6500", CODES_6500, GOOD_6500)],
-)
-def test_one_axis_that_does_not_move_fails(make_bench, part, codes, response, word):
-    broken = list(response)
-    broken[word] = 0
-    passed, ratios = self_test(make(make_bench, part, codes, broken).imu)
+@pytest.mark.parametrize("part", GOOD)
+def test_one_axis_that_does_not_move_fails(tested, part, word):
+    codes, response = GOOD[part]
+    passed, ratios = tested(part, codes, [*response[:word], 0, *response[word + 1 :]])
     assert not passed
     assert ratios[word if word < 3 else word - 1] == pytest.approx(0.0)
 
 
-def test_a_chip_without_factory_trim_does_not_pass(make_bench):
-    passed, ratios = self_test(make(make_bench, "MPU-6050", [0] * 4, GOOD_6050).imu)
-    assert not passed and ratios == [None] * 6
-
-
-def test_the_configuration_is_back_afterwards(make_bench):
-    bench = make(make_bench, "MPU-6050", CODES_6050, GOOD_6050)
-    self_test(bench.imu)
-    assert bench.imu.check()
+def test_a_chip_without_factory_trim_does_not_pass(tested):
+    assert tested("MPU-6050", [0] * 4, GOOD["MPU-6050"][1]) == (False, [None] * 6)
