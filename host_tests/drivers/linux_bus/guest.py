@@ -1,76 +1,63 @@
-"""Runs in the emulated machine: plays into the bus, records from it, corrects from it.
+"""Runs in the emulated machine: plays a chip into the bus and records it with `zerorate record`.
 
-Prints one line of JSON after "RESULT ". Arguments: rate in Hz, seconds of each, what is played.
+A thread plays samples into i2c-stub's registers, as a chip would make them, each told from the
+others by its number. Prints a line of JSON after "RESULT ". Arguments: rate in Hz, seconds.
 """
 
 import json
-import subprocess
+import re
+import struct
 import sys
 import time
-from array import array
-from contextlib import contextmanager, redirect_stdout
+from contextlib import redirect_stdout
 from io import StringIO
-from pathlib import Path
+from threading import Thread
 
-from zerorate import Corrector, Sensor
-from zerorate_i2c.linux import LinuxI2C
-from zerorate_i2c.mpu6050 import MPU6050
+from smbus2 import SMBus
 from zerorate_tools.cli import main as zerorate
+from zerorate_tools.recordings import read_recording
 
-HERE = Path(__file__).parent
 RECORDED = "/dev/shm/recorded.csv"
+NAMES = ("ax", "ay", "az", "temp", "gx", "gy", "gz")
+_ADDRESS, _WHO_AM_I, _ACCEL_XOUT_H = 0x68, 0x75, 0x3B
 
 
-@contextmanager
-def playing(rate_hz, played):
-    """A process that plays into the bus, from its first sample on."""
-    command = [sys.executable, str(HERE / "player.py"), "0", str(rate_hz), played]
-    player = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
-    if player.stdout.readline() != "playing\n":
-        raise SystemExit("the player does not play")
-    try:
-        yield
-    finally:
-        player.kill()
-        player.wait()
+def words(number):
+    """Seven words of a sample; the last is its number."""
+    return (number % 7, 3, 16384, -3000 + number % 5, 40, -20 - number % 3, number)
 
 
-def recorded(rate_hz, seconds):
-    """`zerorate record /dev/i2c-0`: what it says, and the text of its file."""
-    said = StringIO()
-    options = ["--hz", str(rate_hz), "--seconds", str(seconds), "--out", RECORDED]
-    with redirect_stdout(said):
-        exit_code = zerorate(["record", "/dev/i2c-0", *options])
-    if exit_code:
-        raise SystemExit(f"zerorate record ended with {exit_code}")
-    return {"said": said.getvalue(), "text": Path(RECORDED).read_text()}
+def play(i2c, rate_hz):
+    """Play for ever."""
+    begun, number = time.monotonic(), 0
+    while True:
+        data = struct.pack(">7h", *words(number))
+        i2c.write_i2c_block_data(_ADDRESS, _ACCEL_XOUT_H, list(data))
+        number += 1
+        time.sleep(max(0, begun + number / rate_hz - time.monotonic()))
 
 
-def corrected(rate_hz, seconds):
-    """Run driver and corrector on the live bus; the bias learned in LSB."""
-    imu = MPU6050(LinuxI2C(0), odr_hz=rate_hz)
-    corrector = Corrector(Sensor(*imu.scales))
-    sample = array("i", [0] * 7)
-    begun = before = time.monotonic()
-    while before - begun < seconds:
-        repeats = imu.repeats
-        status = imu.read(sample)
-        now = time.monotonic()
-        if status < 2 and imu.repeats == repeats:
-            sample[6] = 0  # the recording counts there
-            corrector.update(sample, int((now - before) * 1e6))
-            before = now
-        time.sleep(0.3 / rate_hz)
-    return {"bias_lsb": [corrector.bias_lsb(axis) for axis in range(3)]}
-
-
-def main(rate_hz, seconds, played):
-    """Record, then correct."""
-    with playing(rate_hz, played):
-        recording = recorded(rate_hz, seconds)
-        correction = corrected(rate_hz, seconds)
-    print("RESULT " + json.dumps({"record": recording, "corrector": correction}))
+def main(rate_hz, seconds):
+    """Record while it plays; what came of it."""
+    i2c = SMBus(0)
+    i2c.write_byte_data(_ADDRESS, _WHO_AM_I, 0x68)
+    Thread(target=play, args=(i2c, float(rate_hz)), daemon=True).start()
+    words_of_it = ["--hz", rate_hz, "--seconds", seconds, "--out", RECORDED]
+    with redirect_stdout(StringIO()) as said:
+        code = zerorate(["record", "/dev/i2c-0", *words_of_it])
+    columns = read_recording(RECORDED).columns
+    rows = list(zip(*(columns[name].tolist() for name in NAMES)))
+    numbers = [row[-1] for row in rows]
+    found = {
+        "code": code,
+        "rows": len(rows),
+        "false_rows": sum(row != words(row[-1]) for row in rows),
+        "out_of_order": sum(b <= a for a, b in zip(numbers, numbers[1:])),
+        "really_lost": numbers[-1] - numbers[0] + 1 - len(rows),
+        "said_lost": int(re.search(r"(\d+) lost", said.getvalue())[1]),
+    }
+    print("RESULT " + json.dumps(found))
 
 
 if __name__ == "__main__":
-    main(float(sys.argv[1]), float(sys.argv[2]), sys.argv[3])
+    main(*sys.argv[1:])

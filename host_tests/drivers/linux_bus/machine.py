@@ -1,24 +1,30 @@
-"""Debian 13's kernel and QEMU in a folder of their own, and the command that boots them.
+"""The recorder on a real Linux kernel's I2C bus, emulated: Debian 13's kernel and QEMU.
 
+python -m host_tests.drivers.linux_bus.machine fetches them, runs guest.py and prints what it found.
 The guest is the host's file tree, mounted read-only by 9p, under a kernel that has /dev/i2c-0: the
 i2c-stub module, 256 registers at one address, answering SMBus but no raw I2C. Emulated (TCG), so
 no right on /dev/kvm is needed.
 """
 
+import json
 import lzma
+import re
+import shlex
 import shutil
 import subprocess
+import sys
 import tempfile
 from pathlib import Path
 
-from zerorate_tools.errors import MissingRuntime
+from zerorate_tools.errors import MissingRuntime, ZerorateError
 from zerorate_tools.runtimes import unix_port
 from zerorate_tools.runtimes.runtime import fill, runtime_folder
 
 NAME = "linux-bus-debian13"
 _PACKAGES = ("qemu-system-x86", "busybox-static", "linux-image-amd64")
 _MODULES = ("virtio_pci", "9pnet_virtio", "9p", "i2c-dev", "i2c-stub")
-_INIT = Path(__file__).with_name("init.sh")
+_HERE = Path(__file__).parent
+_TIME_LIMIT_S = 900
 
 
 def folder() -> Path:
@@ -31,22 +37,38 @@ def fetch() -> Path:
     return fill(folder(), _build)
 
 
-def boot(command: str, seconds: int) -> str:
-    """Boot, run a shell command in the host's tree as root and power off; the console's text.
+def run_guest(rate_hz: float = 25, seconds: float = 6) -> dict:
+    """What came of guest.py: rows, those that are false or out of order, and samples lost.
 
-    MissingRuntime when the machine has not been fetched; subprocess.TimeoutExpired after seconds.
+    Raises MissingRuntime when the machine has not been fetched, ZerorateError with the end of the
+    console's text when the guest came to no result.
     """
+    folders = ("tools", "drivers", "firmware", "host_tests/fakes")
+    path = ":".join(str(_HERE.parents[2] / folder) for folder in folders)
+    guest = shlex.join([sys.executable, str(_HERE / "guest.py"), str(rate_hz), str(seconds)])
+    settings = f"PYTHONPATH={shlex.quote(path)} PYTHONDONTWRITEBYTECODE=1"
+    console = _boot(f"{settings} {guest} 2>&1 | cat\n")
+    if found := re.search("^RESULT (.*)$", console, re.MULTILINE):
+        return json.loads(found[1])
+    last = " | ".join(line for line in console.splitlines()[-6:] if line)
+    raise ZerorateError(f"the emulated Linux machine came to no result: {last}")
+
+
+def _boot(command: str) -> str:
+    """Boot, run a shell command in the host's tree as root and power off; the console's text."""
     root = folder()
     if not root.is_dir():
-        raise MissingRuntime(
-            "the emulated Linux bus is not there: "
-            "python -m host_tests.drivers.linux_bus.run fetches it"
-        )
+        do = "python -m host_tests.drivers.linux_bus.machine fetches it"
+        raise MissingRuntime(f"the emulated Linux bus is not there: {do}")
     with tempfile.TemporaryDirectory(prefix="zerorate-boot-") as scratch:
-        initramfs = Path(scratch) / "initramfs.cpio"
-        initramfs.write_bytes(_initramfs(root, command))
+        tree, initramfs = Path(scratch, "tree"), Path(scratch, "initramfs.cpio")
+        tree.mkdir()
+        initramfs.write_bytes(_initramfs(root, tree, command))
         done = subprocess.run(
-            _qemu(root, initramfs), capture_output=True, timeout=seconds, stdin=subprocess.DEVNULL
+            _qemu(root, initramfs),
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            timeout=_TIME_LIMIT_S,
         )
     return done.stdout.decode(errors="replace").replace("\r\n", "\n")
 
@@ -115,19 +137,23 @@ def _qemu(root: Path, initramfs: Path) -> list[str]:
     ]
 
 
-def _initramfs(root: Path, command: str) -> bytes:
-    """A newc archive (Linux Documentation/driver-api/early-userspace/buffer-format.rst)."""
-    files = {"init": _INIT.read_bytes(), "command": command.encode()}
-    files["bin/busybox"] = (root / "usr/bin/busybox").read_bytes()
+def _initramfs(root: Path, folder: Path, command: str) -> bytes:
+    """The archive of what runs before the host's tree is there, made in an empty folder."""
+    for name in ("bin", "host", "proc", "dev"):
+        (folder / name).mkdir()
+    shutil.copy(_HERE / "init.sh", folder / "init")
+    (folder / "init").chmod(0o755)
+    (folder / "command").write_text(command)
+    busybox = root / "usr/bin/busybox"
+    shutil.copy(busybox, folder / "bin")
     for path in [*root.glob("*.ko"), root / "modules.order"]:
-        files[path.name] = path.read_bytes()
-    entries = [_entry(name, b"", 0o040755) for name in ("bin", "host", "proc", "dev")]
-    entries += [_entry(name, data, 0o100755) for name, data in files.items()]
-    return b"".join([*entries, _entry("TRAILER!!!", b"", 0)])
+        shutil.copy(path, folder)
+    names = "".join(f"{path.relative_to(folder)}\n" for path in sorted(folder.rglob("*")))
+    pack = [busybox, "cpio", "-o", "-H", "newc"]
+    done = subprocess.run(pack, cwd=folder, input=names.encode(), capture_output=True, check=True)
+    return done.stdout
 
 
-def _entry(name: str, data: bytes, mode: int) -> bytes:
-    path = name.encode() + b"\0"
-    fields = [0, mode, 0, 0, 1, 0, len(data), 0, 0, 0, 0, len(path), 0]
-    head = b"070701" + b"".join(b"%08X" % field for field in fields) + path
-    return head + b"\0" * (-len(head) % 4) + data + b"\0" * (-len(data) % 4)
+if __name__ == "__main__":
+    fetch()
+    print(json.dumps(run_guest(), indent=2))
