@@ -176,13 +176,7 @@ AREAS = {
     "boards": (
         [_TOOLS + "boards/"],
         ["drivers/test_" + name for name in (
-            "streams_by_hand.py", "flashing_by_hand.py", "record_bus.py", "packages.py",
-            "boards.py::TestFrames", "boards.py::TestPortThatDoesNotOpen",
-            "boards.py::test_a_micropython_too_old_for_machine_code_is_told",
-            "boards.py::TestLinuxBus",
-            "boards.py::TestFlash::test_a_dry_run_without_a_board_lists_what_any_board_would_get",
-            "boards.py::TestFlash::"
-            "test_a_file_that_is_not_there_is_one_line_before_anything_is_written")],
+            "streams_by_hand.py", "flashing_by_hand.py", "record_bus.py", "packages.py")],
     ),
     "kernels": (
         [_TOOLS + "kernels/", _TOOLS + "layout/"],

@@ -1,5 +1,7 @@
 """What flashing sends, byte by byte: its programs run on this host, in a folder of their own."""
 
+import os
+import pty
 import re
 from contextlib import nullcontext, redirect_stdout
 from functools import cache
@@ -8,9 +10,10 @@ from pathlib import Path, PurePosixPath
 from types import SimpleNamespace
 
 import pytest
+from zerorate_tools import cli
 from zerorate_tools.boards import compiling, flashing
-from zerorate_tools.boards.connection import BoardError, BoardFacts, ask, connected
-from zerorate_tools.boards.parts import chosen_parts, heap_needed, part_files
+from zerorate_tools.boards.connection import BoardError, BoardFacts, ask, connected, listening
+from zerorate_tools.boards.parts import REST, chosen_parts, heap_needed, needs, part_files
 from zerorate_tools.errors import ZerorateError
 
 mpremote = pytest.importorskip("mpremote.transport")
@@ -180,6 +183,82 @@ def test_machine_code_that_does_not_run_is_done_without(flashed, monkeypatch, ru
     assert asked == (["thumb"] if runs else ["thumb", ""])
     assert there() == done.files and len(files) - len(there()) == (not runs)
     assert done.sent_bytes == sum(map(len, files.values()))
+
+
+@pytest.mark.parametrize(
+    ("mpy", "architecture", "told"),
+    [((6, 1), "armv6m", True), ((6, 2), "rv32imc", True), ((6, 3), "armv6m", False)]
+    + [((6, 2), "xtensawin", False), ((5, 0), "armv6m", False)],
+)
+def test_a_micropython_too_old_for_machine_code_is_told(mpy, architecture, told):
+    lines = flashing.older(BoardFacts(version=(1, 22, 0), mpy=mpy, architecture=architecture))
+    assert bool(lines) == told
+    cycles = needs()["cycles"]
+    slower = cycles["bytecode"] / cycles["median"]
+    for line in lines:
+        assert re.findall(r"\d+\.\d+", line) == ["{}.{}".format(*compiling.mpy_version()), "1.23"]
+        assert float(re.search(r"(\d+) times", line)[1]) == pytest.approx(slower, abs=5)
+
+
+def test_a_dry_run_without_a_board_lists_what_any_board_would_get():
+    said = []
+    flashed = flashing.flash("/dev/no-such-port", dry_run=True, say=said.append)
+    assert "/dev/no-such-port: is not there" in said[0]
+    assert PurePosixPath("lib/zerorate_i2c/mpu6050.mpy") in flashed.files
+    assert f"{flashed.total:8d}  bytes" in said[-2]
+    assert "heap needed" in said[-1]
+
+
+@pytest.mark.parametrize("option", ["main", "model"])
+def test_a_file_that_is_not_there_is_one_line_before_anything_is_written(option):
+    with pytest.raises(ZerorateError, match="nowhere.*: (no such file|cannot be read)"):
+        flashing.flash("/dev/no-such-port", **{option: Path("nowhere")})
+
+
+def test_a_board_of_another_mpy_version_gets_the_source():
+    found = compiling.board_files([REST], BoardFacts(mpy=(7, 0)))
+    assert {name.suffix for name in found} == {".py"}
+
+
+@pytest.fixture
+def pseudo_terminal():
+    """(the board's end, the name of the port)."""
+    board, slave = pty.openpty()
+    os.set_blocking(board, False)
+    yield board, os.ttyname(slave)
+    os.close(board)
+    os.close(slave)
+
+
+def refused(capsys, port):
+    """The line in which `flash` says why the port does not open."""
+    assert cli.main(["flash", str(port)]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    return line
+
+
+def test_a_port_that_does_not_open_says_why(capsys, monkeypatch, tmp_path, pseudo_terminal):
+    (tmp_path / "a-file").write_text("")
+    assert "is not there" in refused(capsys, "/dev/no-such-port")
+    assert "is no serial port" in refused(capsys, tmp_path / "a-file")
+    assert "is no serial port" in refused(capsys, tmp_path)
+    with listening(pseudo_terminal[1]):
+        assert "another program has it open" in refused(capsys, pseudo_terminal[1])
+
+    def not_of_its_group(*args, **options):
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr("serial.Serial.open", not_of_its_group)
+    assert "dialout" in refused(capsys, "/dev/ttyACM0")
+
+
+def test_who_listens_has_the_port_alone_and_sends_nothing(pseudo_terminal):
+    board, port = pseudo_terminal
+    with listening(port):
+        with pytest.raises(BoardError), listening(port):
+            pass
+        with pytest.raises(BlockingIOError):
+            os.read(board, 1)
 
 
 class Port:

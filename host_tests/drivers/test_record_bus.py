@@ -5,6 +5,7 @@ import os
 import signal
 from array import array
 from io import FileIO
+from pathlib import Path
 from unittest import mock
 
 import numpy as np
@@ -19,6 +20,7 @@ from zerorate_tools.boards import bus, fake_hand
 from zerorate_tools.boards.bus import record_bus, stream_bus
 from zerorate_tools.boards.fake_chip import FakeBus
 from zerorate_tools.boards.recorder import Recorded, Recorder
+from zerorate_tools.boards.recording import record, stream
 from zerorate_tools.errors import InFile, ZerorateError
 from zerorate_tools.recordings import Recording, Scales, growing, read_recording
 from zerorate_tools.recordings.recording import GYRO
@@ -256,6 +258,33 @@ def test_a_simulated_hand_feels_nothing_new_after_its_recording():
 
 
 pytest.importorskip("smbus2")
+
+
+@pytest.fixture
+def linux_bus(monkeypatch):
+    bus = SMBus(FakeI2C(FakeMPU6050()))
+    monkeypatch.setattr(pytest.importorskip("smbus2"), "SMBus", lambda number: bus)
+
+
+def test_a_setting_no_part_can_take_is_one_line(linux_bus, tmp_path):
+    with pytest.raises(ZerorateError, match="/dev/i2c-1: full_scale_dps is one of"):
+        record("/dev/i2c-1", tmp_path / "run.csv", full_scale_dps=300)
+
+
+@pytest.mark.parametrize(
+    ("name", "bus"),
+    [("/dev/i2c-1", "/dev/i2c-1"), ("12", 12), ("/dev/ttyACM0", 0), ("/dev/i2c-", 0), ("x1", 0)],
+)
+def test_a_number_is_a_bus_and_what_is_none_a_port(monkeypatch, name, bus):
+    asked, refuse = [], mock.Mock(side_effect=OSError)
+    monkeypatch.setattr("zerorate_i2c.linux.LinuxI2C", lambda of: asked.append(of) or refuse())
+    for verb in ("record_port", "stream_port"):
+        monkeypatch.setattr(f"zerorate_tools.boards.port.{verb}", refuse)
+    for how in (record, stream):
+        with pytest.raises(OSError):
+            how(name, Path("run.csv"), seconds=3.0)
+    assert asked == [bus] * 2 * bool(bus)
+    assert all(bus or c.args[0] == name and c.kwargs["seconds"] == 3 for c in refuse.mock_calls)
 
 
 @pytest.mark.parametrize("raw_i2c", [True, False], ids=["i2c_rdwr", "blocks"])

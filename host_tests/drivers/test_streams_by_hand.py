@@ -11,7 +11,15 @@ from zerorate_i2c.mpu6050 import MPU6050
 from zerorate_tools.boards import port
 from zerorate_tools.boards.connection import BoardError
 from zerorate_tools.boards.on_board.stream import Streamer
-from zerorate_tools.boards.port import MESSAGE, SAMPLE, SAMPLE_BYTES, SCALES, BoardStream, encode
+from zerorate_tools.boards.port import (
+    MESSAGE,
+    SAMPLE,
+    SAMPLE_BYTES,
+    SCALES,
+    BoardStream,
+    FrameReader,
+    encode,
+)
 from zerorate_tools.boards.recorder import COLUMNS, Recorded, Recorder, scales_of
 from zerorate_tools.model.model import NAMES
 from zerorate_tools.recordings import read_recording
@@ -196,21 +204,16 @@ HEADER = {"odr_hz": 50, "gyro_lsb_per_dps": 16.4, "accel_lsb_per_g": 2048, "part
 HEADER |= {"temp_lsb_per_degc": 340, "temp_offset_degc": 36.53, "source": "a board"}
 
 
-@pytest.mark.parametrize("binding", [None, [*range(3, 3 + len(NAMES))]])
-def test_scales_say_all_that_a_board_said(binding):
-    said = HEADER if binding is None else {**HEADER, "binding": binding}
-    scales = scales_of(said)
-    assert (scales.odr_hz, scales.gyro_lsb_per_dps, scales.accel_lsb_per_g) == (50, 16.4, 2048)
-    assert scales.more["source"] == "a board"
-    kept = [value for value in scales.more.values() if isinstance(value, dict)]
-    assert [[*v.values()] for v in kept] == ([] if binding is None else [said["binding"]])
-
-
 def test_the_scales_come_behind_what_else_a_board_says():
-    head = {**HEADER, "binding": [*range(len(NAMES))]}
+    said = {**HEADER, "binding": [*range(3, 3 + len(NAMES))]}
     data = b"MPY: soft reboot\r\n" + frames(FRESH) + encode(MESSAGE, b"restarted")
-    data += encode(SCALES, json.dumps(head).encode())
-    assert BoardStream(Sent(data), "port").scales().gyro_lsb_per_dps == 16.4
+    data += encode(SCALES, json.dumps(said).encode())
+    scales = BoardStream(Sent(data), "port").scales()
+    assert (scales.odr_hz, scales.gyro_lsb_per_dps, scales.accel_lsb_per_g) == (50, 16.4, 2048)
+    assert scales.more["source"] == "port"
+    (kept,) = [value for value in scales.more.values() if isinstance(value, dict)]
+    assert [*kept.values()] == said["binding"]
+    assert not any(isinstance(value, dict) for value in scales_of(HEADER).more.values())
 
 
 def test_a_board_that_says_too_few_of_its_registers_is_refused():
@@ -270,37 +273,62 @@ def test_all_that_was_counted_is_said_in_a_recordings_line():
     assert not re.search("restart|bus|port|bytes", str(Recorded(samples=10, seconds=17.0)))
 
 
-class TestLostSamples:
-    @pytest.fixture
-    def lost(self):
-        def count(times_us):
-            recorder = Recorder(lambda columns: None, 10000, Recorded())
-            for t_us in times_us:
-                recorder.add(int(t_us), [0] * 7)
-            return recorder.result.lost
+STEADY_US = np.arange(1000) * 10000
+JITTER_US = np.random.default_rng(1).uniform(-4500, 4500, 1000)
 
-        return count
 
-    def test_a_steady_clock_loses_none(self, lost):
-        assert lost(np.arange(1000) * 10000) == 0
+@pytest.mark.parametrize(
+    ("times_us", "lost"),
+    [
+        pytest.param(STEADY_US, 0, id="steady"),
+        pytest.param(STEADY_US * 0.97, 0, id="a clock 3 % slow"),
+        pytest.param(STEADY_US * 1.03, 0, id="a clock 3 % fast"),
+        pytest.param(STEADY_US + JITTER_US, 0, id="jitter"),
+        pytest.param(np.delete(STEADY_US, 300), 1, id="one is missing"),
+        pytest.param(np.delete(STEADY_US, range(300, 317)), 17, id="17 are missing"),
+        pytest.param(np.delete(STEADY_US, range(300, 800)), 500, id="500 are missing"),
+        pytest.param(np.delete(STEADY_US[:308], 300), 0, id="one, perhaps"),
+        pytest.param(np.delete(STEADY_US[:309], 300), 1, id="one, for the next stay late"),
+        pytest.param(STEADY_US + 16_900 * (STEADY_US == 2_000_000), 0, id="a late one"),
+        pytest.param(STEADY_US + 17_100 * (STEADY_US == 2_000_000), 2, id="far too late"),
+    ],
+)
+def test_a_gap_in_time_counts_what_is_missing(times_us, lost):
+    recorder = Recorder(lambda columns: None, 10000, Recorded())
+    for t_us in times_us:
+        recorder.add(int(t_us), [0] * 7)
+    assert recorder.result.lost == lost
 
-    @pytest.mark.parametrize("percent", [-3, 3])
-    def test_a_chip_whose_clock_is_off_loses_none(self, lost, percent):
-        assert lost(np.arange(5000) * 10000 * (1 + percent / 100)) == 0
 
-    def test_jitter_loses_none(self, lost):
-        jitter = np.random.default_rng(1).uniform(-4500, 4500, 2000)
-        assert lost(np.arange(2000) * 10000 + jitter) == 0
+def test_frames_come_out_of_pieces_of_any_length():
+    stream = b"".join(encode(SAMPLE, bytes([n] * 21)) for n in range(50))
+    for size in (1, 2, 7, 29, 1000):
+        reader = FrameReader()
+        pieces = [stream[at : at + size] for at in range(0, len(stream), size)]
+        frames = [frame for piece in pieces for frame in reader.feed(piece)]
+        assert [payload[0] for _, payload in frames] == list(range(50))
+        assert reader.skipped == 0
 
-    @pytest.mark.parametrize("missing", [1, 2, 17, 500])
-    def test_a_gap_counts_what_is_missing(self, lost, missing):
-        times = np.arange(1000) * 10000
-        assert lost(np.delete(times, range(300, 300 + missing))) == missing
 
-    @pytest.mark.parametrize(("more", "counted"), [(7, 0), (8, 1)])
-    def test_one_is_missing_once_those_after_it_stay_late(self, lost, more, counted):
-        assert lost(np.delete(np.arange(301 + more) * 10000, 300)) == counted
+def test_noise_before_and_between_is_skipped_and_counted():
+    reader = FrameReader()
+    frame = encode(MESSAGE, b"restarted")
+    noise = b"\xa5hello\xa5\x5a"
+    assert len(list(reader.feed(noise + frame + b"xyz" + frame))) == 2
+    assert reader.skipped == len(noise) + 3
 
-    @pytest.mark.parametrize(("late_us", "counted"), [(16_900, 0), (17_100, 2)])
-    def test_a_single_late_one_counts_when_it_is_far_too_late(self, lost, late_us, counted):
-        assert lost(np.arange(300) * 10000 + late_us * (np.arange(300) == 200)) == counted
+
+@pytest.mark.parametrize("length", [0, 20, 22, 255])
+def test_a_sample_of_another_length_holds_no_later_one_back(length):
+    good = encode(SAMPLE, bytes(range(21)))
+    damaged = good[:3] + bytes([length]) + good[4:]
+    assert len(list(FrameReader().feed(damaged + good + good))) == 2
+
+
+def test_no_single_changed_byte_gives_a_false_frame():
+    good = encode(SAMPLE, bytes(range(21)))
+    for at in range(len(good)):
+        damaged = bytearray(good)
+        damaged[at] ^= 0x10
+        frames = list(FrameReader().feed(bytes(damaged) + good * 10))
+        assert all(payload == bytes(range(21)) for _, payload in frames)
