@@ -19,7 +19,7 @@ from zerorate_tools import cli
 from zerorate_tools.boards import bus, fake_hand
 from zerorate_tools.boards.bus import record_bus, stream_bus
 from zerorate_tools.boards.fake_chip import FakeBus
-from zerorate_tools.boards.recorder import Recorded, Recorder
+from zerorate_tools.boards.recorder import Recorder
 from zerorate_tools.boards.recording import record, stream
 from zerorate_tools.errors import InFile, ZerorateError
 from zerorate_tools.recordings import Recording, Scales, growing, read_recording
@@ -155,7 +155,7 @@ def test_what_is_streamed_is_what_is_recorded(any_machine):
     def take(scales):
         assert (scales.odr_hz, scales.more["source"]) == (100.0, "I2C")
         append = lambda columns: rows.extend(columns["gz"])  # noqa: E731
-        return Recorder(append, 1e6 / scales.odr_hz, Recorded())
+        return Recorder([append], 1e6 / scales.odr_hz)
 
     machine = any_machine
     machine.at(3, lambda: machine.bus.fault("nack", times=5))

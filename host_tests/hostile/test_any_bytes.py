@@ -23,7 +23,7 @@ from zerorate_fakes.memory import FakeMemory
 from zerorate_tools.boards import port
 from zerorate_tools.boards.connection import BoardError
 from zerorate_tools.boards.port import encode
-from zerorate_tools.boards.recorder import Recorded, Recorder
+from zerorate_tools.boards.recorder import Recorder
 from zerorate_tools.errors import BadRecording, ZerorateError
 from zerorate_tools.importers import Options, import_recording, parsed_mapping, read_foreign
 from zerorate_tools.model import build_model, encoded, from_json, to_json
@@ -255,11 +255,9 @@ class Sent:
 def test_any_bytes_from_a_board(monkeypatch, pieces):
     monkeypatch.setattr(port, "_SILENCE_S", 0.0)
     reads_or_refuses(port.BoardStream(Sent(pieces), "port").scales)
-    batches = []
-    recorder = Recorder(batches.append, 10000.0, Recorded())
+    recorder = Recorder([], 10000.0)
     ended = port.BoardStream(Sent(pieces), "port").record(recorder, None, lambda seconds: None)
     assert isinstance(ended, BoardError) and "\n" not in str(ended)
-    recorder.flush()
 
 
 def anywhere(draw, values):

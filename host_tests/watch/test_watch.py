@@ -258,6 +258,7 @@ def test_a_chip_on_a_bus_is_watched():
         return taken[0]
 
     stream_bus(FakeI2C(chip, clock=clock), take, seconds=20, time_source=clock)
+    taken[0].flush()
     live = taken[0].live
     assert live.samples == pytest.approx(2000, abs=60)
     assert live.bias_dps * 131 == pytest.approx([41, -20, 10.5], abs=0.5)

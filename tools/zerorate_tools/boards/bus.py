@@ -2,6 +2,7 @@
 
 from array import array
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 from zerorate_i2c import clock
@@ -9,9 +10,7 @@ from zerorate_i2c.fifo import EMPTY, Fifo
 from zerorate_i2c.mpu6050 import FRESH, MPU6050, RESTARTED, VERIFIED
 
 from ..ending import noted_signals
-from ..errors import ZerorateError, os_error_in_words
-from ..recordings import Scales, growing_recording
-from .recorder import COLUMNS, Heard, Recorded, Recorder, SampleTaker, appending, scales_of
+from .recorder import Heard, Recorded, SampleTaker, Take, recorded, scales_of
 
 _POLLS_A_PERIOD = 3
 _PATIENCE_S = 5.0
@@ -20,44 +19,19 @@ _SCALES = ("part", "odr_hz", "gyro_lsb_per_dps", "accel_lsb_per_g", "temp_lsb_pe
 
 
 def record_bus(
-    i2c,
-    out: Path,
-    *,
-    seconds: float | None = None,
-    source: str = "I2C",
-    done: Callable[[float], object] = lambda seconds: None,
-    heard: Heard | None = None,
-    time_source=clock,
-    **options,
+    i2c, out: Path, *, source: str = "I2C", heard: Heard | None = None, **options
 ) -> Recorded:
-    """Record from the chip on i2c, any object with the driver's two methods, into out.
+    """Record from the chip on i2c into out: see stream_bus, of which options are, and Heard.
 
-    seconds None records until a signal that ends programs; options are MPU6050's (address, odr_hz,
-    full_scale_dps ...); done(seconds) is told of progress, and ends it by what is true; heard: see
-    Heard. Samples are verified, and on the disk,
-    twice a second. A bus that fails is waited for up to 5 s; then ZerorateError says so, and out
-    holds what had been verified. Raises OSError where no chip answers, InFile without room.
+    Raises OSError where no chip answers, InFile without room, and ZerorateError for a bus that
+    fails on its way; out then holds what had been verified.
     """
-    check_every = min(100, round(options.get("odr_hz", 100) * _VERIFY_S))
-    imu = MPU6050(i2c, clock=time_source, **{"check_every": check_every, **options})
-    values = {name: getattr(imu, name) for name in (*_SCALES, "temp_offset_degc", "binding")}
-    result, scales = Recorded(part=values["part"]), scales_of({**values, "source": source})
-    with growing_recording(out, COLUMNS, scales) as growing:
-        recorder = Recorder(appending(growing.append, heard, scales), imu.period_us, result)
-        failure = _run(_feed(imu), imu, recorder, seconds, done)
-        if failure is None and _is_verified(imu):
-            recorder.confirm()
-        recorder.discard()
-    result.restarts, result.bus_errors = imu.restarts, imu.bus_errors
-    if failure:
-        text = f"{source}: {os_error_in_words(failure)}; {result.kept(out)}"
-        raise ZerorateError(text) from failure
-    return result
+    return recorded(source, out, heard, partial(stream_bus, i2c, source=source, **options))
 
 
 def stream_bus(
     i2c,
-    take: Callable[[Scales], SampleTaker],
+    take: Take,
     *,
     seconds: float | None = None,
     source: str = "I2C",
@@ -65,18 +39,28 @@ def stream_bus(
     time_source=clock,
     **options,
 ) -> None:
-    """As record_bus, into the SampleTaker that take(scales) makes."""
-    imu = MPU6050(i2c, clock=time_source, **options)
+    """Stream from the chip on i2c, any object with the driver's two methods.
+
+    Into what take(scales) makes. seconds None: until a signal that ends programs; options are
+    MPU6050's (address, odr_hz, full_scale_dps ...); done(seconds) is told of progress, and ends it
+    by what is true. Samples are verified twice a second. Raises OSError where no chip answers, and
+    for a bus that fails, which is waited for up to 5 s.
+    """
+    check_every = min(100, round(options.get("odr_hz", 100) * _VERIFY_S))
+    imu = MPU6050(i2c, clock=time_source, **{"check_every": check_every, **options})
     values = {name: getattr(imu, name) for name in (*_SCALES, "temp_offset_degc", "binding")}
-    recorder = take(scales_of({**values, "source": source}))
-    failure = _run(_feed(imu), imu, recorder, seconds, done)
-    recorder.flush()
+    taker = take(scales_of({**values, "source": source}))
+    failure = _run(_feed(imu), imu, taker, seconds, done)
+    if failure is None and _is_verified(imu):
+        taker.confirm()
+    taker.discard()
+    taker.result.restarts, taker.result.bus_errors = imu.restarts, imu.bus_errors
     if failure:
         raise failure
 
 
-def _run(feed, imu: MPU6050, recorder: SampleTaker, seconds, done) -> OSError | None:
-    """Feed the recorder until time is up or a signal came; the error that ended it, if one did."""
+def _run(feed, imu: MPU6050, taker: SampleTaker, seconds, done) -> OSError | None:
+    """Feed the taker until time is up or a signal came; the error that ended it, if one did."""
     sample = array("i", [0] * 7)
     begun = good = reported = imu.clock.ticks_us()
     with noted_signals() as came:
@@ -84,12 +68,12 @@ def _run(feed, imu: MPU6050, recorder: SampleTaker, seconds, done) -> OSError | 
             try:
                 status, t_us, is_new = feed.read(sample)
             except OSError as error:
-                recorder.discard()
+                taker.discard()
                 if imu.clock.ticks_diff(imu.clock.ticks_us(), good) > _PATIENCE_S * 1e6:
                     return error
                 imu.clock.sleep_ms(100)
                 continue
-            _note(recorder, status, t_us, sample if is_new else None)
+            _note(taker, status, t_us, sample if is_new else None)
             good = imu.clock.ticks_us()
             if imu.clock.ticks_diff(good, reported) > 1_000_000:
                 if done(imu.clock.ticks_diff(good, reported) / 1e6):
@@ -98,13 +82,13 @@ def _run(feed, imu: MPU6050, recorder: SampleTaker, seconds, done) -> OSError | 
     return None
 
 
-def _note(recorder: SampleTaker, status: int, t_us: int, sample: array | None) -> None:
+def _note(taker: SampleTaker, status: int, t_us: int, sample: array | None) -> None:
     if status == RESTARTED:
-        recorder.discard()
+        taker.discard()
     elif status == VERIFIED:
-        recorder.confirm()
+        taker.confirm()
     if sample is not None:
-        recorder.add(t_us, sample)
+        taker.add(t_us, sample)
 
 
 def _is_verified(imu: MPU6050) -> bool:

@@ -5,14 +5,15 @@ import struct
 import time
 from binascii import crc32
 from collections.abc import Callable, Iterator
+from functools import partial
 from importlib.resources import files
 from pathlib import Path
 
 from ..ending import noted_signals
-from ..recordings import Scales, growing_recording
+from ..recordings import Scales
 from ..recordings.scales import scales_from_text
 from .connection import BoardError, connected
-from .recorder import COLUMNS, Heard, Recorded, Recorder, SampleTaker, appending, scales_of
+from .recorder import COLUMNS, Heard, Recorded, SampleTaker, Take, recorded, scales_of
 
 _TICKS = 1 << 30
 _SILENCE_S = 10.0
@@ -26,64 +27,45 @@ _WORDS = struct.Struct(">7h")
 SAMPLE_BYTES = _SAMPLE.size + _WORDS.size
 
 
-def record_port(
-    port: str,
-    out: Path,
-    *,
-    seconds: float | None = None,
-    setup: str = "",
-    done: Callable[[float], object] = lambda seconds: None,
-    heard: Heard | None = None,
-) -> Recorded:
-    """Start the streamer on the board at port and record what it sends into out.
+def record_port(port: str, out: Path, *, heard: Heard | None = None, **options) -> Recorded:
+    """Record from the board at port into out: see stream_port, of which options are, and Heard.
 
-    setup: MicroPython source that makes `imu`, an MPU6050 (default: I2C(0), the driver's defaults).
-    seconds None records until a signal that ends programs, or until done returns what is true;
-    heard: see Heard. Raises BoardError for a board that is
-    silent for 10 s, unplugged, or cannot run the streamer; what had been verified is kept. Raises
-    InFile without room.
+    Raises BoardError as there, when what had been verified is kept, and InFile without room.
     """
-    with connected(port) as board:
-        board.exec_raw_no_follow(program(setup or _default_setup()))
-        stream = BoardStream(board.serial, port)
-        scales = stream.scales()
-        with growing_recording(out, COLUMNS, scales) as growing:
-            append = appending(growing.append, heard, scales)
-            recorder = Recorder(append, 1e6 / scales.odr_hz, Recorded(part=scales.sensor))
-            failure = stream.record(recorder, seconds, done)
-            recorder.confirm() if failure is None else recorder.discard()
-    if failure:
-        raise BoardError(f"{failure}; {recorder.result.kept(out)}") from failure
-    return recorder.result
+    return recorded(port, out, heard, partial(stream_port, port, **options))
 
 
 def stream_port(
     port: str,
-    take: Callable[[Scales], SampleTaker],
+    take: Take,
     *,
     seconds: float | None = None,
     setup: str = "",
     done: Callable[[float], object] = lambda seconds: None,
 ) -> None:
-    """As record_port, into the SampleTaker that take(scales) makes."""
+    """Start the streamer on the board at port; hand what it sends to what take(scales) makes.
+
+    setup: MicroPython source that makes `imu`, an MPU6050 (default: I2C(0), the driver's defaults).
+    seconds None streams until a signal that ends programs, or until done returns what is true.
+    Raises BoardError for a board that is silent for 10 s, unplugged, or cannot run the streamer.
+    """
     with connected(port) as board:
-        board.exec_raw_no_follow(program(setup or _default_setup()))
+        board.exec_raw_no_follow(program(setup or _text("default_setup.py")))
         stream = BoardStream(board.serial, port)
-        recorder = take(stream.scales())
-        failure = stream.record(recorder, seconds, done)
-        recorder.flush()
+        taker = take(stream.scales())
+        failure = stream.record(taker, seconds, done)
+        taker.discard() if failure else taker.confirm()
     if failure:
         raise failure
 
 
 def program(setup: str) -> str:
     """What the board runs: the streamer's own text, then setup, then the stream."""
-    streamer = files(__package__).joinpath("on_board/stream.py").read_text(encoding="utf-8")
-    return f"{streamer}\n{setup}\nstream(imu)\n"
+    return f"{_text('stream.py')}\n{setup}\nstream(imu)\n"
 
 
-def _default_setup() -> str:
-    return files(__package__).joinpath("on_board/default_setup.py").read_text(encoding="utf-8")
+def _text(name: str) -> str:
+    return files(__package__).joinpath(f"on_board/{name}").read_text(encoding="utf-8")
 
 
 class BoardStream:
@@ -170,8 +152,7 @@ class BoardStream:
             raise BoardError(f"{self._port}: the board says: {_last_line(self._tail)}")
         elif time.monotonic() - self._heard > _SILENCE_S:
             raise BoardError(f"{self._port}: silent for {_SILENCE_S:.0f} s")
-        frames = list(self._reader.feed(data))
-        return frames
+        return list(self._reader.feed(data))
 
 
 def _last_line(text: bytes) -> str:

@@ -1,15 +1,17 @@
 """Rows of a recording being made: written, and believed, only when the chip was verified."""
 
 from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol
 
 import numpy as np
 
+from ..errors import ZerorateError, os_error_in_words
 from ..model.model import KEY, NAMES
-from ..recordings import Scales
+from ..recordings import Scales, growing_recording
 from ..recordings.recording import Columns
+from .connection import BoardError
 
 COLUMNS = ["t_us", "ax", "ay", "az", "temp", "gx", "gy", "gz"]
 _STAYS_LATE = 8
@@ -65,28 +67,15 @@ class Recorded:
 Heard = Callable[[Scales], Callable[[Columns], None]]
 
 
-def appending(
-    append: Callable[[Columns], None], heard: Heard | None, scales: Scales
-) -> Callable[[Columns], None]:
-    """What appends a batch, and gives it to who hears it."""
-    if heard is None:
-        return append
-    hear = heard(scales)
+class SampleTaker:
+    """What a board or a bus can stream into: a Recorder keeps samples."""
 
-    def both(columns: Columns) -> None:
-        append(columns)
-        hear(columns)
-
-    return both
-
-
-class SampleTaker(Protocol):
-    """What a board or a bus can stream into; see Recorder."""
-
-    result: Recorded
+    def __init__(self, result: Recorded) -> None:
+        self.result = result
 
     def add(self, t_us: int, sample: Sequence[int]) -> None:
         """One sample of seven words at t_us on any clock."""
+        raise NotImplementedError
 
     def confirm(self) -> None:
         """All since the last call are good."""
@@ -94,23 +83,52 @@ class SampleTaker(Protocol):
     def discard(self) -> None:
         """All since the last call are in doubt."""
 
-    def flush(self) -> None:
-        """No more comes."""
+
+#: Makes what takes the samples once their scales are known.
+Take = Callable[[Scales], SampleTaker]
 
 
-class Recorder:
-    """Takes samples one by one and hands them to append(columns) when they are known to be good.
+def recorded(
+    source: str, out: Path, heard: Heard | None, stream: Callable[[Take], None]
+) -> Recorded:
+    """Record into out what stream(take) streams; what had been verified when it failed is kept.
+
+    Raises BoardError or, for a bus, ZerorateError where it fails on its way, and says what is kept.
+    """
+    made: list[Recorder] = []
+    try:
+        with ExitStack() as opened:
+
+            def take(scales: Scales) -> Recorder:
+                growing = opened.enter_context(growing_recording(out, COLUMNS, scales))
+                appends = [growing.append, *([heard(scales)] if heard else [])]
+                made.append(Recorder(appends, 1e6 / scales.odr_hz, scales.sensor))
+                return made[0]
+
+            stream(take)
+    except (BoardError, OSError) as error:
+        if not made:
+            raise
+        kept = made[0].result.kept(out)
+        if isinstance(error, BoardError):
+            raise BoardError(f"{error}; {kept}") from error
+        raise ZerorateError(f"{source}: {os_error_in_words(error)}; {kept}") from error
+    return made[0].result
+
+
+class Recorder(SampleTaker):
+    """Takes samples one by one and hands them to each of appends when they are known to be good.
 
     Rows wait until confirm() says that the chip was configured right all the while, and discard()
     drops those that wait. Time starts at 0 with the first row and must not go backwards.
     """
 
     def __init__(
-        self, append: Callable[[dict[str, np.ndarray]], None], period_us: float, result: Recorded
+        self, appends: Sequence[Callable[[Columns], None]], period_us: float, part: str = ""
     ) -> None:
-        self._append = append
+        super().__init__(Recorded(part=part))
+        self._appends = appends
         self._period_us = period_us
-        self.result = result
         self._waiting: list[tuple[int, ...]] = []
         self._start_us: int | None = None
         self._expected_us = 0.0
@@ -147,7 +165,9 @@ class Recorder:
         rows = np.array(self._waiting, dtype=np.int64)
         self._waiting.clear()
         columns = dict(zip(COLUMNS, rows.T, strict=True))
-        self._append({k: v if k == "t_us" else v.astype(np.int32) for k, v in columns.items()})
+        columns = {k: v if k == "t_us" else v.astype(np.int32) for k, v in columns.items()}
+        for append in self._appends:
+            append(columns)
         self.result.samples += len(rows)
         self.result.seconds = float(rows[-1, 0]) / 1e6
 
@@ -155,9 +175,6 @@ class Recorder:
         """What waits is in doubt."""
         self.result.doubtful += len(self._waiting)
         self._waiting.clear()
-
-    def flush(self) -> None:
-        """What is confirmed was handed over."""
 
 
 def scales_of(values: dict) -> Scales:

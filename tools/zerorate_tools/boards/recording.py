@@ -1,27 +1,21 @@
 """One command for both: a Linux I2C bus by its device path, a board by its serial port."""
 
 import re
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import Any
 
 from ..errors import MissingLibrary, ZerorateError
-from ..recordings import Scales
 from ..recordings.writing import check_output
-from .recorder import Recorded, SampleTaker
+from .recorder import Recorded, Take
 
 FAKE = "fake:"
 _BUS = re.compile(r"/dev/i2c-\d+|\d+")
 
 
 def record(
-    port_or_bus: str,
-    out: str | Path,
-    *,
-    seconds: float | None = None,
-    done: Callable[[float], object] = lambda seconds: None,
-    **options,
+    port_or_bus: str, out: str | Path, *, seconds: float | None = None, **options: Any
 ) -> Recorded:
     """Record from /dev/i2c-N (or N) or from a board on a serial port into out; `fake:` is an
     emulated chip in a simulated hand, for as long as that moves and without waiting.
@@ -31,49 +25,37 @@ def record(
     setting that no part can take, OSError for a bus that does not.
     """
     check_output(out)
-    _require_a_board(port_or_bus, options)
-    if port_or_bus == FAKE:
-        return _record_fake(Path(out), seconds=seconds, done=done, **options)
-    if _BUS.fullmatch(port_or_bus):
-        return _record_linux(port_or_bus, Path(out), seconds=seconds, done=done, **options)
-    from .port import record_port
+    if _is_board(port_or_bus, options):
+        from .port import record_port
 
-    return record_port(port_or_bus, Path(out), seconds=seconds, done=done, **options)
+        return record_port(port_or_bus, Path(out), seconds=seconds, **options)
+    how = _record_fake if port_or_bus == FAKE else _record_linux
+    return how(port_or_bus, Path(out), seconds=seconds, **options)
 
 
-def stream(
-    port_or_bus: str,
-    take: Callable[[Scales], SampleTaker],
-    *,
-    seconds: float | None = None,
-    done: Callable[[float], object] = lambda seconds: None,
-    **options,
-) -> None:
-    """As record, but into the SampleTaker that take(scales) makes; `fake:` rests, in real time."""
-    _require_a_board(port_or_bus, options)
-    if port_or_bus == FAKE:
-        from .bus import stream_bus
-        from .fake_chip import FakeBus
+def stream(port_or_bus: str, take: Take, *, seconds: float | None = None, **options: Any) -> None:
+    """As record, but into what take(scales) makes; `fake:` rests, in real time."""
+    if _is_board(port_or_bus, options):
+        from .port import stream_port
 
-        stream_bus(FakeBus(), take, source=FAKE, seconds=seconds, done=done)
+        stream_port(port_or_bus, take, seconds=seconds, **options)
         return
-    if _BUS.fullmatch(port_or_bus):
-        from .bus import stream_bus
+    from .bus import stream_bus
+    from .fake_chip import FakeBus
 
-        with _opened(port_or_bus) as i2c:
-            stream_bus(i2c, take, source=port_or_bus, seconds=seconds, done=done, **options)
-        return
-    from .port import stream_port
-
-    stream_port(port_or_bus, take, seconds=seconds, done=done, **options)
+    with nullcontext(FakeBus()) if port_or_bus == FAKE else _opened(port_or_bus) as i2c:
+        stream_bus(i2c, take, source=port_or_bus, seconds=seconds, **options)
 
 
-def _require_a_board(port_or_bus: str, options: dict[str, Any]) -> None:
-    if "setup" in options and (port_or_bus == FAKE or _BUS.fullmatch(port_or_bus)):
+def _is_board(port_or_bus: str, options: dict[str, Any]) -> bool:
+    if port_or_bus != FAKE and not _BUS.fullmatch(port_or_bus):
+        return True
+    if "setup" in options:
         raise ZerorateError(f"{port_or_bus} is no board: leave out --setup")
+    return False
 
 
-def _record_fake(out: Path, *, seconds: float | None, **options) -> Recorded:
+def _record_fake(source: str, out: Path, *, seconds: float | None, **options: Any) -> Recorded:
     from .bus import record_bus
     from .fake_hand import in_hand
 
@@ -81,12 +63,12 @@ def _record_fake(out: Path, *, seconds: float | None, **options) -> Recorded:
     try:
         bus, clock, longest = in_hand(**given)
         seconds = longest if seconds is None else min(seconds, longest)
-        return record_bus(bus, out, source=FAKE, seconds=seconds, time_source=clock, **options)
+        return record_bus(bus, out, source=source, seconds=seconds, time_source=clock, **options)
     except ValueError as error:
-        raise ZerorateError(f"{FAKE} {error}") from error
+        raise ZerorateError(f"{source} {error}") from error
 
 
-def _record_linux(bus: str, out: Path, **options) -> Recorded:
+def _record_linux(bus: str, out: Path, **options: Any) -> Recorded:
     from .bus import record_bus
 
     with _opened(bus) as i2c:

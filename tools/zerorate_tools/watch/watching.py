@@ -10,7 +10,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.csv
 
-from ..boards.recorder import COLUMNS, Recorded
+from ..boards.recorder import COLUMNS, Recorded, SampleTaker
 from ..boards.recording import FAKE, stream
 from ..errors import BadRecording
 from ..recordings import Scales, csv_format, open_recording
@@ -131,15 +131,15 @@ def _parsed(rows: bytes, names: list[str]) -> Columns:
 _PATIENCE_S = 0.25
 
 
-class Watcher:
-    """A SampleTaker that shows samples through the firmware instead of keeping them.
+class Watcher(SampleTaker):
+    """Shows samples through the firmware instead of keeping them.
 
     In doubt or not, all are given to it: its guard is there to judge them.
     """
 
     def __init__(self, source: str, scales: Scales, options: WatchOptions, shown: Screen) -> None:
+        super().__init__(Recorded())
         self.live = Live(source, scales, COLUMNS, options.settings, options.model)
-        self.result = Recorded()
         self._shown, self._every_s = shown, options.seconds_between_looks(shown)
         self._waiting: list[tuple[int, ...]] = []
         self._fed = self._looked = time.monotonic()
@@ -165,12 +165,6 @@ class Watcher:
         self._looked = time.monotonic()
         self._shown.show(self.live, [])
 
-    def confirm(self) -> None:
-        """The chip was configured right: nothing to do, for nothing is kept."""
-
-    def discard(self) -> None:
-        """It was not, perhaps: the firmware's guard has seen it too."""
-
 
 def watch_board(source: str, options: WatchOptions) -> Live | None:
     """Watch a board's port or a Linux bus: see `watch`."""
@@ -184,6 +178,7 @@ def watch_board(source: str, options: WatchOptions) -> Live | None:
 
         seconds = 1.0 if options.once and options.seconds is None else options.seconds
         stream(source, take, seconds=seconds, done=lambda _: made[0].flush(), **more)
+        made[0].flush()
         made[0].look()
         return made[0].live if made[0].live.samples else None
 
