@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 from functools import cache
 from importlib.resources import files
 from importlib.util import find_spec
+from itertools import accumulate
 from pathlib import Path, PurePosixPath
 
 from ..errors import ZerorateError
@@ -85,45 +86,35 @@ def part_files(parts: Iterable[str], code: str = "") -> dict[PurePosixPath, Path
     waiting = list(roots)
     while waiting:
         module = waiting.pop()
-        if module in found or module in stops:
-            continue
-        path = module_file(module)
-        found[module] = path
-        waiting += _imports(path, module, code)
-    return dict(sorted((_on_board(path), path) for path in found.values()))
+        if module not in found and module not in stops:
+            found[module] = module_file(module)
+            waiting += _imports(found[module], module, code)
+    return dict(sorted((_on_board(module, path), path) for module, path in found.items()))
 
 
 def module_file(module: str) -> Path:
     """The file of a module of the packages. Raises ModuleNotFoundError."""
-    path = _find(module)
-    if path is None:
+    if module not in _files():
         raise ModuleNotFoundError(f"{module} is not installed beside zerorate_tools")
-    return path
-
-
-def _find(module: str) -> Path | None:
-    package, *rest = module.split(".")
-    path = _root(package).joinpath(*rest)
-    for file in (path / "__init__.py", path.with_name(path.name + ".py")):
-        if file.is_file():
-            return file
-    return None
+    return _files()[module]
 
 
 @cache
-def _root(package: str) -> Path:
-    spec = find_spec(package)
-    if spec is None or not spec.submodule_search_locations:
-        raise ModuleNotFoundError(f"{package} is not installed beside zerorate_tools")
-    return Path(next(iter(spec.submodule_search_locations)))
-
-
-def _on_board(path: Path) -> PurePosixPath:
+def _files() -> dict[str, Path]:
+    """Module -> file, of all modules of the packages."""
+    found = {}
     for package in PACKAGES:
-        root = _root(package)
-        if path.is_relative_to(root):
-            return PurePosixPath(package, *path.relative_to(root).parts)
-    raise ModuleNotFoundError(f"{path} is in no package of the firmware")
+        spec = find_spec(package)
+        for root in map(Path, (spec and spec.submodule_search_locations) or ()):
+            for path in root.rglob("*.py"):
+                words = path.relative_to(root.parent).with_suffix("").parts
+                found[".".join(words).removesuffix(".__init__")] = path
+    return found
+
+
+def _on_board(module: str, path: Path) -> PurePosixPath:
+    place = PurePosixPath(*module.split("."))
+    return place / path.name if path.name == "__init__.py" else place.with_suffix(".py")
 
 
 def _imports(path: Path, module: str, code: str) -> Iterator[str]:
@@ -131,7 +122,7 @@ def _imports(path: Path, module: str, code: str) -> Iterator[str]:
     package = module if path.name == "__init__.py" else module.rpartition(".")[0]
     tree = ast.parse(path.read_text(encoding="utf-8"))
     machine_code = f"{_NATIVE}.{code}_{module.rpartition('.')[2]}"
-    if code and package == _NATIVE and _find(machine_code) is not None:
+    if code and package == _NATIVE and machine_code in _files():
         yield machine_code
         for choice in tree.body:  # what is imported only where there is none
             if isinstance(choice, ast.If):
@@ -153,12 +144,9 @@ def _base(node: ast.ImportFrom, package: str) -> str:
 
 def _with_packages(names: Iterable[str]) -> Iterator[str]:
     for name in names:
-        words = name.split(".")
-        if words[0] in PACKAGES:
-            for count in range(1, len(words) + 1):
-                module = ".".join(words[:count])
-                if _find(module) is not None:
-                    yield module
+        for module in accumulate(name.split("."), "{}.{}".format):
+            if module in _files():
+                yield module
 
 
 def needs() -> dict[str, dict[str, int]]:
