@@ -6,9 +6,12 @@ import subprocess
 import sys
 import threading
 import tty
+from io import StringIO
 
 import numpy as np
 import pytest
+from rich.console import Console
+from rich.live import Live as RichLive
 from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050
 from zerorate_tools.boards.bus import stream_bus
 from zerorate_tools.cli import main
@@ -20,8 +23,8 @@ from zerorate_tools.simulate import simulate
 from zerorate_tools.watch import watch
 from zerorate_tools.watch.live import Live
 from zerorate_tools.watch.own import OwnOutput
-from zerorate_tools.watch.screen import Lines, WatchOptions, draw, screen, sparkline
-from zerorate_tools.watch.watching import CsvTail, Watcher, growing_file
+from zerorate_tools.watch.screen import Area, Lines, WatchOptions, draw, screen
+from zerorate_tools.watch.watching import CsvTail, Watcher
 
 DESCRIPTION = {
     "name": "run",
@@ -48,39 +51,38 @@ def log(tmp_path, recording):
     return path
 
 
-class Writer:
-    """Writes a recording's text into a file piece by piece, rows cut in the middle as well."""
-
-    def __init__(self, log, folder):
-        self.text = log.read_bytes()
-        self.path = folder / "run.csv"
-        self.path.write_bytes(b"")
-        self.path.with_suffix(".json").write_bytes(log.with_suffix(".json").read_bytes())
-
-    def write(self, begin, end):
-        with self.path.open("ab") as file:
-            file.write(self.text[begin:end])
-
-
-@pytest.fixture
-def writer(log, tmp_path):
-    writer = Writer(log, tmp_path)
-    writer.write(0, 1000)
-    return writer
-
-
-def test_every_row_is_read_once_wherever_the_writer_was_interrupted(writer, recording):
-    tail, parts = CsvTail(writer.path), []
-    cuts = [*range(1000, len(writer.text), 777), len(writer.text)]
-    for begin, end in zip([1000, *cuts], cuts):
-        columns = tail.read()
-        parts += [columns] if columns else []
-        writer.write(begin, end)
-    parts.append(tail.read())
+def test_every_row_is_read_once_wherever_the_writer_was_interrupted(log, recording):
+    text, parts = log.read_bytes(), []
+    log.write_bytes(text[:1000])
+    tail = CsvTail(log)
+    for end in [*range(1777, len(text), 777), len(text)]:
+        parts.append(tail.read())
+        log.write_bytes(text[:end])
+    parts = [columns for columns in (*parts, tail.read()) if columns]
     together = {name: np.concatenate([p[name] for p in parts]) for name in tail.column_names}
     for name, values in recording.columns.items():
         assert (together[name] == values).all()
     assert tail.read() is None
+
+
+def test_a_file_begun_anew_is_a_new_power_on_and_one_that_goes_away_is_said(log):
+    tail = CsvTail(log)
+    first = tail.read()
+    log.write_bytes(log.read_bytes()[:500])
+    second = tail.read()
+    assert tail.restarts == 1
+    assert second["t_us"][0] == first["t_us"][0]
+    log.unlink()
+    with pytest.raises(BadRecording, match="gone"):
+        tail.read()
+
+
+def test_rows_that_are_none_are_left_out_and_counted(log, capsys):
+    rows = log.read_text().splitlines(keepends=True)
+    log.write_text("".join([*rows[:20], "oops,1,2\n", *rows[20:]]))
+    live = watch(str(log), WatchOptions(once=True))
+    assert live.samples == len(rows) - 1
+    assert "1 rows left out: not 8 integers" in capsys.readouterr().out
 
 
 def test_the_firmware_is_where_a_replay_of_the_file_leaves_it(log, capsys):
@@ -96,38 +98,31 @@ def test_once_prints_one_line_however_long_the_reading_takes(log, capsys, monkey
     assert len(capsys.readouterr().out.splitlines()) == 1
 
 
-def test_a_writer_in_another_process_is_followed(writer, log, tmp_path):
-    program = (
-        "import sys, time\n"
-        "text = open(sys.argv[1], 'rb').read()\n"
-        "with open(sys.argv[2], 'ab', buffering=0) as file:\n"
-        "    for at in range(1000, len(text), 4001):\n"
-        "        file.write(text[at:at + 4001])\n"
-        "        time.sleep(0.02)\n"
-    )
-    command = [sys.executable, "-c", program, str(log), str(writer.path)]
-    stop = threading.Event()
-    with subprocess.Popen(command) as process:
-        lines = []
-
-        class Shown(Lines):
-            def show(self, live, notes):
-                lines.append(live.samples)
-                if process.poll() is not None and live.samples == len(writer.text.splitlines()) - 1:
-                    stop.set()
-
-        from zerorate_tools.watch.watching import Following
-
-        following = Following(CsvTail(writer.path), WatchOptions(every_s=0.01), Shown())
-        following._goes_on = lambda: not stop.is_set()
-        following.run()
-    assert len(set(lines)) > 1  # how often it looks is up to how busy the machine is
-    assert state_bytes(following.live.corrector) == replay(log).state
+@pytest.mark.parametrize(
+    ("name", "plot", "said"),
+    [
+        ("a.parquet", "", "index at its end"),
+        ("a.csv.gz", "", "gzip"),
+        ("a.csv", "", "no such"),
+        (".", "", "is a folder; name a .csv that is being written"),
+        ("whole/alone.csv", "", "alone.json"),
+        ("a.csv", "bias.txt", "end it in .png"),
+        ("a.csv", "none/bias.png", "no folder"),
+    ],
+)
+def test_what_cannot_be_followed_or_drawn_is_said_in_a_line(log, capsys, name, plot, said):
+    log.with_name("alone.csv").write_bytes(log.read_bytes())
+    folder = log.parents[1]
+    more = ["--plot", str(folder / plot)] if plot else []
+    assert main(["watch", str(folder / name), *more]) == 2
+    error = capsys.readouterr().err
+    assert said in error and error.count("\n") == 1
 
 
-def test_a_folder_is_named_as_one(tmp_path):
-    with pytest.raises(BadRecording, match="is a folder; name a .csv that is being written"):
-        growing_file(tmp_path)
+def test_without_what_draws_the_watch_does_not_begin(log, monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
+    assert main(["watch", str(log), "--plot", str(log.with_name("bias.png"))]) == 2
+    assert "needs matplotlib" in capsys.readouterr().err
 
 
 def test_ctrl_c_ends_it_well(log):
@@ -146,30 +141,6 @@ def test_ctrl_c_ends_it_well(log):
     assert "bias dps" in first and "Traceback" not in rest
 
 
-def test_a_file_that_stops_growing_is_said(log, monkeypatch, capsys):
-    monkeypatch.setattr("zerorate_tools.watch.watching._STALLED_S", 0.1)
-    monkeypatch.setattr("zerorate_tools.watch.watching._STALLED_SAMPLES", 1)
-    watch(str(log), WatchOptions(seconds=0.8, every_s=0.1, settings=_RESTS))
-    assert "has not grown" in capsys.readouterr().out.splitlines()[-1]
-
-
-def test_rows_that_are_none_are_left_out_and_counted(writer, capsys):
-    whole = writer.text.rindex(b"\n", 0, 1000) + 1
-    writer.path.write_bytes(writer.text[:whole] + b"oops,1,2\n" + writer.text[whole:])
-    live = watch(str(writer.path), WatchOptions(once=True))
-    assert live.samples == len(writer.text.splitlines()) - 1
-    assert "1 rows left out: not 8 integers" in capsys.readouterr().out
-
-
-def test_a_file_begun_anew_is_a_new_power_on(writer):
-    tail = CsvTail(writer.path)
-    first = tail.read()
-    writer.path.write_bytes(writer.text[:500])
-    second = tail.read()
-    assert tail.restarts == 1
-    assert second["t_us"][0] == first["t_us"][0]
-
-
 @pytest.mark.parametrize("name", ["run.csv", "run.csv.gz", "run.parquet"])
 def test_what_record_is_writing_is_found_before_it_has_its_name(tmp_path, recording, name):
     out = tmp_path / name
@@ -177,15 +148,6 @@ def test_what_record_is_writing_is_found_before_it_has_its_name(tmp_path, record
         writing.append(recording.between(0, 500).columns)
         assert not out.exists()
         assert len(CsvTail(out).read()["t_us"]) == 500
-
-
-@pytest.mark.parametrize(
-    "name, said", [("a.parquet", "index at its end"), ("a.csv.gz", "gzip"), ("a.csv", "no such")]
-)
-def test_what_cannot_be_followed_is_said_in_a_line(tmp_path, capsys, name, said):
-    assert main(["watch", str(tmp_path / name)]) == 2
-    error = capsys.readouterr().err
-    assert said in error and error.count("\n") == 1
 
 
 @pytest.mark.parametrize("name", ["run.parquet", "run.csv.gz"])
@@ -211,40 +173,13 @@ def test_a_terminal_too_narrow_for_the_numbers_gets_lines(monkeypatch):
             assert isinstance(shown, Lines) == is_narrow
 
 
-def test_a_file_that_goes_away_is_said(writer):
-    tail = CsvTail(writer.path)
-    writer.path.unlink()
-    with pytest.raises(BadRecording, match="gone"):
-        tail.read()
-
-
-def test_a_name_is_shown_letter_by_letter_on_a_terminal(recording, tmp_path):
-    from io import StringIO
-
-    from rich.console import Console
-    from rich.live import Live as RichLive
-    from zerorate_tools.watch.live import Live
-    from zerorate_tools.watch.screen import Area
-
-    text = StringIO()
-    console = Console(file=text, force_terminal=True, width=120, color_system=None)
+def test_a_name_is_shown_letter_by_letter_on_a_terminal(recording):
+    console = Console(file=StringIO(), force_terminal=True, width=120, color_system=None)
     live = Live("[red]run[/red]", recording.scales, recording.column_names)
-    live.feed(recording.columns)
     with RichLive(console=console, auto_refresh=False) as area:
         Area(area).show(live, ["a note"])
-    shown = text.getvalue()
+    shown = console.file.getvalue()
     assert "[red]run[/red]" in shown and "a note" in shown
-    assert "temperature 29.9" in shown and "fit" in shown
-
-
-def test_the_bias_of_each_second_is_kept_and_drawn_from_its_lowest_to_its_highest(recording):
-    live = Live("run", recording.scales, recording.column_names)
-    for first, last in ((0, 40), (40, 60)):  # 25 a second: of seconds 0, 1 and 2
-        live.feed({name: column[first:last] for name, column in recording.columns.items()})
-    assert len(live.history) == 3 and live.samples == 60
-    assert live.duration_s == pytest.approx(59 / 25) and live.rate_hz == pytest.approx(25)
-    assert sparkline(np.arange(8.0)) == "▁▂▃▄▅▆▇█" and sparkline(np.array([2.0, 2.0])) == "▁▁"
-    assert len(sparkline(np.arange(99.0))) == 24 and sparkline(np.zeros(0)) == ""
 
 
 def test_a_chip_on_a_bus_is_watched():
@@ -264,27 +199,10 @@ def test_a_chip_on_a_bus_is_watched():
     assert live.bias_dps * 131 == pytest.approx([41, -20, 10.5], abs=0.5)
 
 
-def test_scales_missing_beside_the_file_are_said(writer):
-    writer.path.with_suffix(".json").unlink()
-    with pytest.raises(BadRecording, match="run.json"):
-        watch(str(writer.path), WatchOptions(once=True))
-
-
 def test_a_bias_that_is_not_known_has_no_sigma(log, capsys):
     log.write_text("".join(log.read_text().splitlines(keepends=True)[:2]))
     watch(str(log), WatchOptions(once=True))
     assert "x none  y none  z none" in capsys.readouterr().out
-
-
-def test_what_a_board_prints_is_read_as_its_rates_and_their_bias():
-    told = OwnOutput("/dev/ttyACM0")
-    told.feed(b"found: MPU-6050\r\nbefore +0.303 -0.182 +0.084  after +0.003 +0.0")
-    assert told.source == ["none"] * 3
-    told.feed(b"08 -0.006 dps\r\n")
-    assert told.bias_dps == pytest.approx([0.3, -0.19, 0.09])
-    assert np.isnan(told.quality_dps).all() and len(told.history) == 1
-    told.feed(b"MPY: soft reboot\r\n")
-    assert told.source == ["none"] * 3 and not told.history
 
 
 def test_what_a_board_explains_is_read_as_the_firmware_means_it(log):
@@ -295,6 +213,10 @@ def test_what_a_board_explains_is_read_as_the_firmware_means_it(log):
     assert told.quality_dps == pytest.approx(live.quality_dps, abs=6e-4)
     assert told.source == live.source
     assert told.learning() == live.learning()
+    told.feed(b"before +0.303 -0.182 +0.084  after +0.003 +0.008 -0.006 dps\r\n")
+    assert len(told.history) == 1
+    told.feed(b"MPY: soft reboot\r\n")
+    assert told.source == ["none"] * 3 and not told.history
 
 
 def test_a_picture_has_eight_hundred_by_four_hundred_and_fifty_points(tmp_path):
@@ -327,19 +249,3 @@ def test_a_program_that_prints_no_bias_is_watched_and_not_drawn(tmp_path, capsys
     said = capsys.readouterr()
     assert codes == [0, 2] and not list(tmp_path.iterdir())
     assert "with +0.01 deg" in said.out and "no bias came to be drawn" in said.err
-
-
-@pytest.mark.parametrize(
-    ("name", "said"), [("bias.txt", "end it in .png"), ("none/bias.png", "no folder")]
-)
-def test_a_picture_that_could_not_be_written_is_refused_before_the_watch(
-    tmp_path, capsys, name, said
-):
-    assert main(["watch", "no-such.csv", "--plot", str(tmp_path / name)]) == 2
-    assert said in capsys.readouterr().err
-
-
-def test_without_what_draws_the_watch_does_not_begin(tmp_path, monkeypatch, capsys):
-    monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
-    assert main(["watch", str(tmp_path / "run.csv"), "--plot", str(tmp_path / "bias.png")]) == 2
-    assert "needs matplotlib" in capsys.readouterr().err

@@ -11,8 +11,7 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from types import TracebackType
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
@@ -117,15 +116,8 @@ def _sigma(shown: Shown) -> np.ndarray:
     return np.sqrt(np.diag(np.linalg.inv(shown.normal + _WIDE))).reshape(3, 3)
 
 
-class Screen(Protocol):
-    """Takes what is known, as often as one likes."""
-
-    def show(self, known: KnownSoFar) -> None:
-        """Show it."""
-
-
 @contextmanager
-def screen() -> Iterator[Screen]:
+def screen() -> Iterator["Lines | Bars"]:
     """Bars on a terminal; lines on standard output where there is none."""
     if not sys.stdout.isatty():
         yield Lines()
@@ -228,7 +220,7 @@ class Guide:
     holds less than a second.
     """
 
-    def __init__(self, shown: Screen, waits: bool = False) -> None:
+    def __init__(self, shown: Lines | Bars, waits: bool = False) -> None:
         self.known: KnownSoFar | None = None
         self._shown, self._waits = shown, waits
         self._waiting: list[Columns] = []
@@ -238,12 +230,7 @@ class Guide:
     def __enter__(self) -> "Guide":
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        at: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         self._pool.shutdown()
 
     def heard(self, scales: Scales) -> Callable[[Columns], None]:
@@ -256,15 +243,14 @@ class Guide:
         if self.known is None:
             return False
         if self._look is None and self._has_come_s() >= _LOOK_S:
-            batches = self._waiting[:]
+            self._look = self._pool.submit(self.known.look, self._waiting[:])
             self._waiting.clear()
-            self._look = self._pool.submit(self.known.look, batches)
-        if self._look is not None and (self._waits or self._look.done()):
-            self._look.result()
-            self._look = None
-            self._shown.show(self.known)
-            return self.known.all_known
-        return False
+        if self._look is None or not (self._waits or self._look.done()):
+            return False
+        self._look.result()
+        self._look = None
+        self._shown.show(self.known)
+        return self.known.all_known
 
     def _has_come_s(self) -> float:
         if not self._waiting:

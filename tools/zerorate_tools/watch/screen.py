@@ -1,17 +1,21 @@
 """What a person sees: a screen that renews itself, or lines where there is no terminal."""
 
 import sys
-from collections import deque
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol
+from shutil import get_terminal_size
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
 from ..errors import MissingLibrary, ZerorateError
 from ..numbers import fixed
+
+if TYPE_CHECKING:
+    from .live import Live
+    from .own import OwnOutput
 
 _BARS = "▁▂▃▄▅▆▇█"
 _WIDTH = 24
@@ -19,49 +23,20 @@ _WIDTH = 24
 _LEAST_COLUMNS = 70
 
 
-class Shown(Protocol):
-    """What is shown: Live, or OwnOutput of a board's own program. A quality of NaN is not known."""
-
-    name: str
-    temp_degc: float | None
-    rate_dps: np.ndarray
-    left_dps: np.ndarray
-    history: deque[np.ndarray]
-
-    @property
-    def duration_s(self) -> float: ...
-    @property
-    def bias_dps(self) -> np.ndarray: ...
-    @property
-    def quality_dps(self) -> np.ndarray: ...
-    @property
-    def source(self) -> list[str]: ...
-    def headline(self) -> str: ...
-    def conditions(self) -> list[str]: ...
-    def learning(self) -> list[str]: ...
-
-
-class Screen(Protocol):
-    """Takes what there is to say, as often as one likes."""
-
-    def show(self, live: Shown, notes: list[str]) -> None:
-        """Show the firmware's state, and what is to be said of the source."""
+#: What is shown: the firmware, or a board's own program. A quality of NaN is not known.
+Shown: TypeAlias = "Live | OwnOutput"
+Screen: TypeAlias = "Lines | Area"
 
 
 @contextmanager
 def screen(plain: bool = False) -> Iterator[Screen]:
     """A screen for this terminal; lines where there is none, or a narrow one, or `plain`."""
-    if plain or not sys.stdout.isatty():
+    if plain or not sys.stdout.isatty() or get_terminal_size().columns < _LEAST_COLUMNS:
         yield Lines()
         return
-    from rich.console import Console
     from rich.live import Live as RichLive
 
-    console = Console()
-    if console.width < _LEAST_COLUMNS:
-        yield Lines()
-        return
-    with RichLive(console=console, auto_refresh=False) as area:
+    with RichLive(auto_refresh=False) as area:
         yield Area(area)
 
 

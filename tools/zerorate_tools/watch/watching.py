@@ -3,7 +3,7 @@
 import io
 import re
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +21,11 @@ from .live import Live
 from .screen import Screen, Shown, WatchOptions, screen
 
 _MOST_BYTES = 1 << 20
+#: What is read only when it is finished -> why.
+_WHOLE_ALONE = {
+    ".parquet": "a Parquet file has its index at its end, so it cannot be read while it grows",
+    ".gz": "gzip holds rows back until a block of them is full",
+}
 
 
 def growing_file(path: Path) -> Path:
@@ -31,12 +36,10 @@ def growing_file(path: Path) -> Path:
     """
     if not path.is_file() and (unfinished := unfinished_of(path)):
         return unfinished[-1]
-    if path.name.endswith(".parquet"):
-        problem = "a Parquet file has its index at its end, so it cannot be read while it grows"
-        raise BadRecording(path, problem, do="record to .csv, or add --once when it is finished")
-    if path.name.endswith(".gz"):
-        problem = "gzip holds rows back until a block of them is full"
-        raise BadRecording(path, problem, do="record to .csv, or add --once when it is finished")
+    for ending, problem in _WHOLE_ALONE.items():
+        if path.name.endswith(ending):
+            do = "record to .csv, or add --once when it is finished"
+            raise BadRecording(path, problem, do=do)
     if not path.is_file():
         do = "name a .csv that is being written, a board's port or /dev/i2c-N"
         raise BadRecording(path, "is a folder" if path.is_dir() else "no such file", do=do)
@@ -189,7 +192,7 @@ _STALLED_S = 3.0
 _STALLED_SAMPLES = 20
 
 
-def watch(source: str, options: WatchOptions | None = None) -> Shown | None:
+def watch(source: str, options: WatchOptions | None = None) -> "Shown | None":
     """Run the firmware on what comes from a growing CSV, a board's port or a bus, and show it.
 
     With `once` a finished recording of any form will do. Ends at Ctrl-C as well. Returns the
@@ -204,7 +207,7 @@ def watch(source: str, options: WatchOptions | None = None) -> Shown | None:
     if is_device(source):
         return watch_board(source, options)
     path = Path(source)
-    is_whole = options.once and path.is_file() and path.name.endswith((".parquet", ".gz"))
+    is_whole = options.once and path.is_file() and path.name.endswith(tuple(_WHOLE_ALONE))
     tail = Finished(path) if is_whole else CsvTail(path)
     with screen(options.plain) as shown:
         following = Following(tail, options, shown)
@@ -228,7 +231,6 @@ class Following:
         self.tail, self.options, self._shown = tail, options, shown
         self.live = self._fresh()
         self._begun = self._grown = self._looked = time.monotonic()
-        self._clock: Callable[[], float] = time.monotonic
 
     def run(self) -> None:
         """Read and show until it is told to end."""
@@ -239,7 +241,7 @@ class Following:
                 self.live = self._fresh()
             if columns is not None:
                 self.live.feed(columns)
-                self._grown = self._clock()
+                self._grown = time.monotonic()
             elif self.options.once:
                 return
             else:
@@ -248,12 +250,12 @@ class Following:
                 self.look()
 
     def _is_time_to_look(self) -> bool:
-        waited_s = self._clock() - self._looked
+        waited_s = time.monotonic() - self._looked
         return not self.options.once and waited_s >= self.options.seconds_between_looks(self._shown)
 
     def look(self) -> None:
         """Show what there is."""
-        self._looked = self._clock()
+        self._looked = time.monotonic()
         self._shown.show(self.live, self._notes())
 
     def _fresh(self) -> Live:
@@ -261,19 +263,17 @@ class Following:
         return Live(self.tail.name, self.tail.scales, self.tail.column_names, o.settings, o.model)
 
     def _goes_on(self) -> bool:
-        return self.options.seconds is None or self._clock() - self._begun < self.options.seconds
+        return self.options.seconds is None or time.monotonic() - self._begun < self.options.seconds
 
     def _notes(self) -> list[str]:
         notes = []
-        silent_s = self._clock() - self._grown
+        silent_s = time.monotonic() - self._grown
         patience_s = max(_STALLED_S, _STALLED_SAMPLES / self.tail.scales.odr_hz)
         if not self.options.once and silent_s > patience_s:
             notes.append(f"the file has not grown for {silent_s:.0f} s: has its writer stopped?")
         if self.tail.bad_rows:
-            notes.append(f"{self.tail.bad_rows} rows left out: not {self._cells()} integers")
+            cells = len(self.tail.column_names)
+            notes.append(f"{self.tail.bad_rows} rows left out: not {cells} integers")
         if self.tail.restarts:
             notes.append("the file became shorter and was begun anew")
         return notes
-
-    def _cells(self) -> int:
-        return len(self.tail.column_names)
