@@ -59,15 +59,9 @@ class TestParts:
 
 
 @pytest.mark.parametrize(("name", "text"), [pytest.param(*m, id=str(m[0])) for m in manifests()])
-class TestMip:
-    def test_its_file_is_fresh(self, repository, name, text):
-        remedy = "python -m zerorate_bench.native.manifests writes it again"
-        assert (repository / name).read_text() == text, remedy
-
-    def test_every_file_that_it_names_is_beside_it(self, repository, name, text):
-        listed = json.loads(text)["urls"]
-        assert listed
-        assert all((repository / name).parent.joinpath(url).is_file() for _, url in listed)
+def test_a_file_of_mip_is_fresh(repository, name, text):
+    remedy = "python -m zerorate_bench.native.manifests writes it again"
+    assert (repository / name).read_text() == text, remedy
 
 
 def test_mip_installs_the_driver_from_package_json_and_it_imports(

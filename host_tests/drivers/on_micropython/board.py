@@ -7,35 +7,27 @@ import sys
 
 BANNER = b"raw REPL; CTRL-B to exit\r\n>"
 WINDOW = 512
+write = sys.stdout.buffer.write
 
 
 def read():
-    """One byte, whatever interrupts."""
-    while True:
-        try:
-            byte = sys.stdin.buffer.read(1)
-        except KeyboardInterrupt:
-            continue
-        if not byte:
-            raise SystemExit
-        return byte
-
-
-def write(data):
-    sys.stdout.buffer.write(data)
+    """One byte from the host."""
+    byte = sys.stdin.buffer.read(1)
+    if not byte:
+        raise SystemExit
+    return byte
 
 
 def raw_paste():
+    """The source that comes window by window."""
     write(b"R\x01" + bytes([WINDOW & 0xFF, WINDOW >> 8]))
     source = bytearray()
-    while True:
-        byte = read()
-        if byte == b"\x04":
-            write(b"\x04")
-            return bytes(source)
+    while (byte := read()) != b"\x04":
         source.extend(byte)
         if len(source) % WINDOW == 0:
             write(b"\x01")
+    write(b"\x04")
+    return bytes(source)
 
 
 def execute(source, names):
@@ -48,49 +40,32 @@ def execute(source, names):
         write(b"\x04>")
 
 
-class Repl:
-    """The raw REPL's state between bytes."""
-
-    def __init__(self):
-        self.names = {}
-        self.source = bytearray()
-        self.raw = False
-
-    def take(self, byte):
-        """One byte from the host."""
-        if byte == b"\x01":
-            self.raw = True
-            self.source = bytearray()
-            write(BANNER)
-        elif byte == b"\x02":
-            self.raw = False
-        elif self.raw and byte == b"\x05":
-            if read() == b"A" and read() == b"\x01":
-                execute(raw_paste(), self.names)
-        elif self.raw and byte == b"\x04":
-            self.run()
-        elif self.raw:
-            self.source.extend(byte)
-
-    def run(self):
-        """What was sent; nothing is a soft reset."""
-        source = bytes(self.source)
-        self.source = bytearray()
-        if source:
-            write(b"OK")
-            execute(source, self.names)
-        else:
-            self.names = {}
-            write(b"OK\r\nMPY: soft reboot\r\n" + BANNER)
+def serve():
+    """Do what the host says, until it is gone."""
+    names, source, is_raw = {}, bytearray(), False
+    write(b"ready\n")
+    while True:
+        try:
+            byte = read()
+            if byte == b"\x01":
+                source, is_raw = bytearray(), True
+                write(BANNER)
+            elif byte == b"\x02":
+                is_raw = False
+            elif is_raw and byte == b"\x05":
+                if read() == b"A" and read() == b"\x01":
+                    execute(raw_paste(), names)
+            elif is_raw and byte == b"\x04" and source:
+                write(b"OK")
+                execute(bytes(source), names)
+                source = bytearray()
+            elif is_raw and byte == b"\x04":  # a soft reset
+                names = {}
+                write(b"OK\r\nMPY: soft reboot\r\n" + BANNER)
+            elif is_raw:
+                source.extend(byte)
+        except KeyboardInterrupt:
+            pass
 
 
-repl = Repl()
-begun = False
-while True:
-    try:
-        if not begun:
-            begun = True
-            write(b"ready\n")
-        repl.take(read())
-    except KeyboardInterrupt:
-        pass
+serve()
