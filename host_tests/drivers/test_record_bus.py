@@ -260,13 +260,9 @@ def test_a_simulated_hand_feels_nothing_new_after_its_recording():
 pytest.importorskip("smbus2")
 
 
-@pytest.fixture
-def linux_bus(monkeypatch):
+def test_a_setting_no_part_can_take_is_one_line(tmp_path, monkeypatch):
     bus = SMBus(FakeI2C(FakeMPU6050()))
     monkeypatch.setattr(pytest.importorskip("smbus2"), "SMBus", lambda number: bus)
-
-
-def test_a_setting_no_part_can_take_is_one_line(linux_bus, tmp_path):
     with pytest.raises(ZerorateError, match="/dev/i2c-1: full_scale_dps is one of"):
         record("/dev/i2c-1", tmp_path / "run.csv", full_scale_dps=300)
 

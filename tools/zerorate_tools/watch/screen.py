@@ -6,16 +6,12 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from shutil import get_terminal_size
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from ..errors import MissingLibrary, ZerorateError
 from ..numbers import fixed
-
-if TYPE_CHECKING:
-    from .live import Live
-    from .own import OwnOutput
 
 _BARS = "▁▂▃▄▅▆▇█"
 _WIDTH = 24
@@ -23,8 +19,9 @@ _WIDTH = 24
 _LEAST_COLUMNS = 70
 
 
-#: What is shown: the firmware, or a board's own program. A quality of NaN is not known.
-Shown: TypeAlias = "Live | OwnOutput"
+#: What is shown: a Live, or the OwnOutput of a board's own program, which has the same names.
+#: A quality of NaN is not known.
+Shown: TypeAlias = Any
 Screen: TypeAlias = "Lines | Area"
 
 

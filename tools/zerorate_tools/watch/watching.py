@@ -192,7 +192,7 @@ _STALLED_S = 3.0
 _STALLED_SAMPLES = 20
 
 
-def watch(source: str, options: WatchOptions | None = None) -> "Shown | None":
+def watch(source: str, options: WatchOptions | None = None) -> Shown | None:
     """Run the firmware on what comes from a growing CSV, a board's port or a bus, and show it.
 
     With `once` a finished recording of any form will do. Ends at Ctrl-C as well. Returns the
