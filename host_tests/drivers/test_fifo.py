@@ -92,13 +92,6 @@ def test_more_than_a_batch_takes_two_and_the_step_of_all(by_hand):
     assert by_hand.bench.bus.transfers - transfers == 6  # the flags, the count, the frames
 
 
-def test_an_odd_period_begins_half_a_period_ago(by_hand):
-    by_hand.imu.period_us = 9999
-    by_hand.fifo._begin(0)
-    by_hand.frames(1)
-    assert by_hand.read(9999 - 5000)[2] == 9999
-
-
 @pytest.mark.parametrize("count, over", [(71, False), (72, True)])
 def test_a_fifo_with_no_room_for_a_frame_has_overflowed(by_hand, count, over):
     by_hand.frames(count)
@@ -127,22 +120,6 @@ def test_other_flags_are_none(by_hand, flag):
     assert by_hand.fifo.overflows == 0
 
 
-def test_nothing_lost_is_not_less_than_nothing(by_hand):
-    by_hand.frames(2)
-    by_hand.read(15000)
-    by_hand.fifo._lose(4000)  # before the newest delivered
-    assert by_hand.fifo.lost == 0
-
-
-def test_bytes_over_are_misaligned_when_they_stay(by_hand):
-    by_hand.frames(2)
-    by_hand.chip.fifo.put(1)
-    assert by_hand.read(15000)[0] == EMPTY
-    fifo = by_hand.fifo
-    assert (fifo.lost, fifo.overflows, fifo.misalignments) == (2, 0, 1)
-    assert (by_hand.chip.fifo.count, by_hand.chip.registers[0x6A]) == (0, 0x40)
-
-
 def test_a_read_back_is_told_with_the_next_frame_though_nothing_waits(make):
     by_hand = make(check_every=40)
     told = []
@@ -153,12 +130,6 @@ def test_a_read_back_is_told_with_the_next_frame_though_nothing_waits(make):
         by_hand.frames(1)
         told.append(by_hand.read(10000 * load)[0])
     assert told == [FRESH] * 5 + [VERIFIED] + [FRESH] * 2 + [VERIFIED] + [FRESH]
-
-
-def test_only_the_first_frame_of_a_batch_tells_of_the_read_back(by_hand):
-    by_hand.imu._until_check = 0
-    by_hand.frames(3)
-    assert [by_hand.read(25000)[0] for _ in range(3)] == [VERIFIED, FRESH, FRESH]
 
 
 @pytest.mark.parametrize("sign", [1, -1])
@@ -215,12 +186,6 @@ def test_silence_of_more_than_sixteen_periods_restarts_the_chip(by_hand, late_us
     assert by_hand.read(5000 + 160000 + late_us)[0] == EMPTY
     assert by_hand.read(5000 + 160000)[0] == said
     assert by_hand.imu.restarts == late_us
-
-
-def test_a_frame_that_waits_is_no_silence(by_hand):
-    by_hand.frames(1)
-    assert by_hand.read(200000)[0] == FRESH
-    assert by_hand.imu.suspects == 0
 
 
 def test_a_batch_is_never_read_twice(by_hand):

@@ -330,14 +330,3 @@ def test_a_file_that_does_not_compile_is_told_by_its_name_and_line(tmp_path):
     file.write_text("a = 1\nb = (\n")
     with pytest.raises(ZerorateError, match=r"wrong\.py.*SyntaxError"):
         compiling.compiled(file, "wrong")
-
-
-@pytest.mark.parametrize(
-    ("said", "version"),
-    [("MicroPython v1.24 on x; mpy-cross emitting mpy v6.3", (6, 3)), ("mpy v7", (7, 0))],
-)
-def test_the_version_of_compiled_files_is_what_the_compiler_says(monkeypatch, said, version):
-    monkeypatch.setattr(
-        compiling.subprocess, "run", lambda *a, **more: SimpleNamespace(stdout=said)
-    )
-    assert compiling.mpy_version.__wrapped__() == version

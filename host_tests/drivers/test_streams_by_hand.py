@@ -256,11 +256,6 @@ def test_a_stream_ends_when_its_time_is_up(monkeypatch):
     assert serial.seconds == 8 and told == [1.0] * 8
 
 
-def test_the_rate_of_a_recording_is_of_its_whole_periods():
-    assert Recorded(samples=101, seconds=2.0).rate_hz == 50.0
-    assert Recorded(samples=1).rate_hz == 0.0
-
-
 def test_all_that_was_counted_is_said_in_a_recordings_line():
     counts = {"lost": 11, "doubtful": 12, "restarts": 13, "bus_errors": 14, "dropped": 15}
     said = str(Recorded(samples=10, seconds=17.0, bytes_skipped=16, part="X", **counts))

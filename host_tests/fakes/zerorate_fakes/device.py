@@ -198,7 +198,9 @@ class FakeMPU6050:
         if register == _ACCEL_CONFIG2 and self._size_chosen:
             self.fifo = Fifo(min(self._fifo_bytes, 512 << (value >> 6)))
         if register == _USER_CTRL:
-            value = self._user_control(value)
+            if value & 0x04:
+                self.fifo.clear()
+            value &= 0xF0
         self.registers[register] = value
 
     def next_register(self, register: int) -> int:
@@ -228,7 +230,7 @@ class FakeMPU6050:
                 self.interrupt()
 
     def _next_in_dmp(self) -> "tuple[int, int]":
-        """Bank and address that MEM_R_W stands for, which then counts up."""
+        """Bank and address of MEM_R_W, which then counts up."""
         place = (self.registers[_BANK_SEL], self.registers[_MEM_START_ADDR])
         self.registers[_MEM_START_ADDR] = (place[1] + 1) & 0xFF
         return place
@@ -247,11 +249,6 @@ class FakeMPU6050:
             verb = "read" if kind == READ else "written"
             text = "register 0x{:02x} of {} is not to be {}"
             raise UnknownRegister(text.format(register, self.part, verb))
-
-    def _user_control(self, value: int) -> int:
-        if value & 0x04:
-            self.fifo.clear()
-        return value & ~0x0F & 0xFF
 
     def _store(self, sample: "Sequence[int]") -> None:
         standby = self.registers[_PWR_MGMT_2]

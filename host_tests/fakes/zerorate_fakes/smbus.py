@@ -8,7 +8,7 @@ except ImportError:  # MicroPython, whose programs open no bus of Linux
 TYPE_CHECKING = False
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
     from typing import Any
 
     from .bus import FakeI2C
@@ -150,27 +150,19 @@ class SMBus:
 
     def _read_on(self, addr: int, data: bytearray) -> None:
         """Fill data from the register that was written or read last."""
-        try:
-            with self._transfer:
-                self.bus.readfrom_into(addr, data)
-        except OSError as error:
-            raise _linux_error(error) from None
+        self._transferred(self.bus.readfrom_into, addr, data)
 
     def _read(self, addr: int, register: int, length: int) -> bytes:
-        try:
-            with self._transfer:
-                return self.bus.readfrom_mem(addr, register, length)
-        except OSError as error:
-            raise _linux_error(error) from None
+        return self._transferred(self.bus.readfrom_mem, addr, register, length)
 
     def _write(self, addr: int, data: "Sequence[int]") -> None:
+        self._transferred(self.bus.writeto, addr, bytes(data))
+
+    def _transferred(self, transfer: "Callable[..., Any]", *words: "Any") -> "Any":
+        """What a transfer of the bus gives; its errors are Linux's."""
         try:
             with self._transfer:
-                self.bus.writeto(addr, bytes(data))
+                return transfer(*words)
         except OSError as error:
-            raise _linux_error(error) from None
-
-
-def _linux_error(error: OSError) -> OSError:
-    number = error.args[0]
-    return OSError(*_ERRORS.get(number, (number, "I2C error")))
+            number = error.args[0]
+            raise OSError(*_ERRORS.get(number, (number, "I2C error"))) from None

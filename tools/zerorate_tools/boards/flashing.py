@@ -11,7 +11,7 @@ from pathlib import Path, PurePosixPath
 from ..bounds import bytes_of
 from .compiling import board_files, machine_code, mpy_version
 from .connection import BoardError, BoardFacts, ask, connected, output_of
-from .parts import PACKAGES, REST, chosen_parts, parts_there
+from .parts import PACKAGES, REST, chosen_parts, heap_needed, needs, parts_there
 
 _LIBRARY = "lib"
 _STAGE = "zerorate.new"
@@ -107,8 +107,6 @@ def _packages(parts, facts: BoardFacts, code: str) -> dict[PurePosixPath, bytes]
 
 def older(facts: BoardFacts) -> list[str]:
     """A line where a newer MicroPython would run machine code, and this one does not."""
-    from .parts import needs
-
     newest = mpy_version()
     kinds = ("armv", "rv32")
     if facts.mpy[0] != newest[0] or facts.mpy >= newest or facts.architecture[:4] not in kinds:
@@ -123,8 +121,6 @@ def older(facts: BoardFacts) -> list[str]:
 
 def room(facts: BoardFacts, parts: Iterable[str], total: int) -> list[str]:
     """What is needed of flash and heap beside what the board has, in lines."""
-    from .parts import heap_needed
-
     needed = heap_needed(parts, machine_code(facts))
     has = f"; it has {facts.heap_free:,} free" if facts.heap_free else ""
     lines = [f"heap needed: {needed:,} bytes{has}"]
@@ -143,22 +139,19 @@ class Installer:
     def __init__(self, board, port: str, say: Callable[[str], None]) -> None:
         self._board, self._port, self._say = board, port, say
         self._waiting: list[str] = []
-
         text = files(__package__).joinpath("on_board/install.py").read_text(encoding="utf-8")
         self._do(text)
 
     def with_those_there(self, parts: tuple[str, ...], only: bool) -> tuple[str, ...]:
         """The parts with those that the board has, or, with only, without; says which."""
-        there = parts_there(PurePosixPath(name).relative_to(_LIBRARY) for name in self._sent())
+        names = [name for package in PACKAGES for name in self._there(f"{_LIBRARY}/{package}")]
+        there = parts_there(PurePosixPath(name).relative_to(_LIBRARY) for name in names)
         before = [part for part in chosen_parts(there) if part in there.difference(parts, {REST})]
         if before and only:
             self._say(f"removed, for it is not named: {', '.join(before)}")
         elif before:
             self._say(f"kept, as sent before: {', '.join(before)} (--only removes it)")
         return parts if only else chosen_parts([*parts, *before])
-
-    def _sent(self) -> list[str]:
-        return [name for package in PACKAGES for name in self._there(f"{_LIBRARY}/{package}")]
 
     def install(
         self, parts: tuple[str, ...], extra: dict[PurePosixPath, bytes], only: bool = False
@@ -199,7 +192,7 @@ class Installer:
         there = self._there(place)
         if there == {str(name): _mark(data) for name, data in wanted.items()}:
             for name, data in wanted.items():
-                self._say(f"{len(data):8d}  {name}  the same already")
+                self._tell(name, data, "the same already")
             return
         staged = self._there(stage)
         for name, data in wanted.items():
@@ -212,28 +205,31 @@ class Installer:
     def _stage(self, name: PurePosixPath, data: bytes, there, staged, flashed: Flashed) -> None:
         target = str(_staged(name))
         if staged.get(target) == _mark(data):
-            how = "sent before"
+            self._tell(name, data, "sent before")
         elif there.get(str(name)) == _mark(data):
             self._later(f"make_folders({target!r})\ncopy({str(name)!r}, {target!r})")
-            how = "the same already"
+            self._tell(name, data, "the same already")
         else:
             self._send(target, data)
-            flashed.sent.append(name)
-            flashed.sent_bytes += len(data)
-            how = "written"
-        self._say(f"{len(data):8d}  {name}  {how}")
+            self._sent(name, data, flashed)
 
     def _install_file(self, name: PurePosixPath, data: bytes, flashed: Flashed) -> None:
         if self._there(str(name)) == {str(name): _mark(data)}:
-            self._say(f"{len(data):8d}  {name}  the same already")
+            self._tell(name, data, "the same already")
             return
         new = f"{name}.new"
         self._send(new, data)
         self._check({new: data}, new)
         self._do(f"replace({new!r}, {str(name)!r})")
+        self._sent(name, data, flashed)
+
+    def _sent(self, name: PurePosixPath, data: bytes, flashed: Flashed) -> None:
         flashed.sent.append(name)
         flashed.sent_bytes += len(data)
-        self._say(f"{len(data):8d}  {name}  written")
+        self._tell(name, data, "written")
+
+    def _tell(self, name: PurePosixPath, data: bytes, how: str) -> None:
+        self._say(f"{len(data):8d}  {name}  {how}")
 
     def _send(self, path: str, data: bytes) -> None:
         self._later(f"make_folders({path!r})")

@@ -4,7 +4,7 @@ import json
 import struct
 import time
 from binascii import crc32
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import partial
 from importlib.resources import files
 from pathlib import Path
@@ -20,7 +20,8 @@ _SILENCE_S = 10.0
 _VERIFIED, _SUSPECT, _SEEN_BEFORE = 1, 3, 0x80
 SAMPLE, SCALES, MESSAGE = 1, 2, 3
 _SYNC = b"\xa5\x5a"
-_HEAD = 4
+_HEAD = 4  # the two bytes of _SYNC, kind, length of the payload
+_KIND = 2
 _CRC = 4
 _SAMPLE = struct.Struct("<HIB")
 _WORDS = struct.Struct(">7h")
@@ -152,7 +153,7 @@ class BoardStream:
             raise BoardError(f"{self._port}: the board says: {_last_line(self._tail)}")
         elif time.monotonic() - self._heard > _SILENCE_S:
             raise BoardError(f"{self._port}: silent for {_SILENCE_S:.0f} s")
-        return list(self._reader.feed(data))
+        return self._reader.feed(data)
 
 
 def _last_line(text: bytes) -> str:
@@ -177,42 +178,31 @@ class FrameReader:
 
     def __init__(self) -> None:
         self.skipped = 0
-        self._bytes = bytearray()
+        self._held = b""
 
-    def feed(self, data: bytes) -> Iterator[tuple[int, bytes]]:
-        """Take data; yield (kind, payload) of every frame that is complete and right."""
-        self._bytes += data
-        while (frame := self._next()) is not None:
-            yield frame
+    def feed(self, data: bytes) -> list[tuple[int, bytes]]:
+        """Take data; (kind, payload) of every frame that is complete and right."""
+        held, at, frames = self._held + data, 0, []
+        while at < len(held) and (end := _end(held, at)) <= len(held):
+            body, check = held[at : end - _CRC], held[end - _CRC : end]
+            if end > at and crc32(body).to_bytes(_CRC, "little") == check:
+                frames.append((body[_KIND], body[_HEAD:]))
+                at = end
+            else:
+                self.skipped += 1
+                at += 1
+        self._held = held[at:]
+        return frames
 
-    def _next(self) -> tuple[int, bytes] | None:
-        while True:
-            self._skip_to_sync()
-            if len(self._bytes) >= _HEAD and not self._is_plausible():
-                self._drop(1)
-                continue
-            if len(self._bytes) < _HEAD or len(self._bytes) < self._frame_bytes():
-                return None
-            end = self._frame_bytes()
-            body, check = self._bytes[: end - _CRC], self._bytes[end - _CRC : end]
-            if crc32(body).to_bytes(_CRC, "little") == check:
-                del self._bytes[:end]
-                return body[2], bytes(body[_HEAD:])
-            self._drop(1)
 
-    def _is_plausible(self) -> bool:
-        kind, length = self._bytes[2], self._bytes[3]
-        return kind in (SCALES, MESSAGE) or (kind == SAMPLE and length == SAMPLE_BYTES)
-
-    def _frame_bytes(self) -> int:
-        return _HEAD + self._bytes[3] + _CRC
-
-    def _skip_to_sync(self) -> None:
-        start = self._bytes.find(_SYNC)
-        if start < 0:
-            start = len(self._bytes) - (1 if self._bytes.endswith(_SYNC[:1]) else 0)
-        self._drop(start)
-
-    def _drop(self, count: int) -> None:
-        self.skipped += count
-        del self._bytes[:count]
+def _end(held: bytes, at: int) -> int:
+    """Where the frame that begins at a place ends, be it beyond what came; the place for none."""
+    head = held[at : at + _HEAD]
+    if not _SYNC.startswith(head[: len(_SYNC)]):
+        return at
+    if len(head) < _HEAD:
+        return len(held) + 1
+    kind, length = head[_KIND:]
+    if kind in (SCALES, MESSAGE) or (kind, length) == (SAMPLE, SAMPLE_BYTES):
+        return at + _HEAD + length + _CRC
+    return at
