@@ -55,8 +55,8 @@ AREAS = {
     "drivers": (
         ["drivers/zerorate_i2c/"],
         ["drivers/test_" + name for name in (
-            "mpu6050.py", "faults.py", "fifo.py", "data_ready.py",
-            "settings.py", "record_bus.py", "fake_buses.py")],
+            "mpu6050.py", "fifo.py", "data_ready.py", "settings.py",
+            "record_bus.py", "fake_buses.py", "faults.py")],
     ),
     "storage": (
         ["firmware/zerorate/storage/"],

@@ -101,6 +101,7 @@ def test_a_reader_that_was_killed_or_is_a_parents_is_replaced(log, tmp_path, mon
     assert len(read_recording(log)) == 50
 
 
+_IMPORTED = "multiprocessing pyulog numpy scipy pymavlink rosbags ziglang pyarrow json"
 _TRAP = "open('sprung', 'w').close(); raise SystemExit(3)\n"
 _BEGINNINGS = {
     "x.ulg": b"ULog\x01\x12\x35\x01",
@@ -116,17 +117,7 @@ _BEGINNINGS = {
 @pytest.fixture
 def trapped(tmp_path, monkeypatch):
     """A working folder in which every module that a child imports is a trap."""
-    for name in (
-        "multiprocessing",
-        "pyulog",
-        "numpy",
-        "scipy",
-        "pymavlink",
-        "rosbags",
-        "ziglang",
-        "pyarrow",
-        "json",
-    ):
+    for name in _IMPORTED.split():
         (tmp_path / f"{name}.py").write_text(_TRAP)
     monkeypatch.chdir(tmp_path)
     return tmp_path
