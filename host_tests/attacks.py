@@ -7,69 +7,66 @@ files each reader is given.
 import argparse
 import os
 import re
+import shlex
 import subprocess
 import sys
 import time
 from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[1]
-_PYTEST = ["-m", "pytest", "-q", "-p", "no:cacheprovider"]
-
-# what is attacked -> (with what, arguments of Python)
+_PYTEST = "pytest -q -p no:cacheprovider"
+# what is attacked -> (with what, module of Python and its arguments)
 ATTACKS = {
-    "bus and store": ("faults, cuts, turned bits", ["-m", "zerorate_tools.cli", "bench", "faults"]),
+    "bus and store": ("faults, cuts, turned bits", "zerorate_tools.cli bench faults"),
     "store, while it lives": (
         "a turned bit, then a cut",
-        [*_PYTEST, "host_tests/firmware", "-k", "test_store or test_places"],
+        f"{_PYTEST} host_tests/firmware -k 'test_store or test_places'",
     ),
     "a state, checksum right": (
         "every word turned",
-        ["-m", "host_tests.turned_words", "--on", "x86", "--on", "armhf"],
+        "host_tests.turned_words --on x86 --on armhf",
     ),
-    "models": ("cuts, turned bits, noise", [*_PYTEST, "host_tests/tools", "-k", "test_model"]),
-    "readers": ("damaged files", [*_PYTEST, "host_tests/hostile", "-k", "any"]),
-    "logs": ("damaged logs of 15 formats", ["-m", "host_tests.hostile.many_logs"]),
-    "commands": ("odd files, names, numbers, places", ["-m", "host_tests.hostile.odd_commands"]),
+    "models": ("cuts, turned bits, noise", f"{_PYTEST} host_tests/tools -k test_model"),
+    "readers": ("damaged files", f"{_PYTEST} host_tests/hostile -k any"),
+    "logs": ("damaged logs of 15 formats", "host_tests.hostile.many_logs"),
+    "commands": ("odd files, names, numbers, places", "host_tests.hostile.odd_commands"),
     "memory": (
         "six files that unpack to gigabytes",
-        [*_PYTEST, "-s", "host_tests/hostile/test_bombs.py"],
+        f"{_PYTEST} -s host_tests/hostile/test_bombs.py",
     ),
     "writers": (
         "signals, full disks",
-        [*_PYTEST, "host_tests/tools", "-k", "test_atomic or test_drafts or test_growing"],
+        f"{_PYTEST} host_tests/tools -k 'test_atomic or test_drafts or test_growing'",
     ),
     "writers, killed": (
         "kill -9 at each rename, and at lengths of files",
-        ["-m", "host_tests.tools.killed_writers"],
+        "host_tests.tools.killed_writers",
     ),
     "recorders, killed": (
         "SIGTERM, SIGHUP, SIGINT, kill -9, full disks, unpluggings",
-        ["-m", "host_tests.tools.killed_recorders"],
+        "host_tests.tools.killed_recorders",
     ),
     "reports": (
         "hostile names",
-        [
-            *_PYTEST,
-            "host_tests/report/test_page.py",
-            "host_tests/fleet/test_population.py",
-            "-k",
-            "name",
-        ],
+        f"{_PYTEST} host_tests/report/test_page.py host_tests/fleet/test_population.py -k name",
     ),
-    "31 bits": ("random sensors and settings", ["-m", "host_tests.firmware.sweep"]),
-    "service restarts": ("10,000, in order and by kill", ["-m", "host_tests.service.restarts"]),
+    "31 bits": ("random sensors and settings", "host_tests.firmware.sweep"),
+    "service restarts": ("10,000, in order and by kill", "host_tests.service.restarts"),
     "service": (
         "1,000 readers, failing sinks, buses",
-        [*_PYTEST, "host_tests/service", "-k", "not restarts"],
+        f"{_PYTEST} host_tests/service -k 'not restarts'",
     ),
-    "a board's day": ("resets, unpluggings", ["-m", "host_tests.boards.day"]),
+    "a board's day": ("resets, unpluggings", "host_tests.boards.day"),
 }
 
 
 def attack(arguments):
     """(how many succeeded, what was said last, lines that tell a peak of memory) of a command."""
     done = subprocess.run(
-        [sys.executable, *arguments], cwd=REPOSITORY, capture_output=True, text=True
+        [sys.executable, "-m", *shlex.split(arguments)],
+        cwd=REPOSITORY,
+        capture_output=True,
+        text=True,
     )
     lines = [line for line in done.stdout.splitlines() if line.strip()]
     failed = re.search(r"(\d+) failed", done.stdout)

@@ -130,37 +130,38 @@ def attack(options, count, seed, only=None):
     """Counts of what became of the turned states, and lines on those that fell."""
     state = learned(options)
     settings = Corrector(**options).settings
-    frames, bias = rest(40, -6000, -2500, 2)
+    frames, bias_lsb = rest(40, -6000, -2500, 2)
     reason, corrector = stored(state, options)
     assert reason == LOADED
-    usual = max(error_mdps(corrector, frames, bias) for _ in range(ROUNDS))
-    tally = {"loaded": 0, "afresh": 0, "signals": 0, "exceptions": 0, "wrong": 0}
+    usual_mdps = max(error_mdps(corrector, frames, bias_lsb) for _ in range(ROUNDS))
+
+    def outcome(turned):
+        """What the load says, and the error of the last round that was needed."""
+        reason, corrector = stored(turned, options)
+        assert reason in (LOADED, OUT_OF_RANGE)
+        off_mdps = 0.0
+        for _ in range(ROUNDS if reason == LOADED else 0):
+            off_mdps = error_mdps(corrector, frames, bias_lsb)
+            if off_mdps < usual_mdps + WRONG_MDPS:
+                break
+        return reason, off_mdps
+
+    tally = dict.fromkeys(("loaded", "afresh", "signals", "exceptions", "wrong"), 0)
     lines = []
     for at, value in turnings(state, settings, count, seed, only):
         turned = array("i", state)
         turned[at] = value
-
-        def what(turned=turned):
-            reason, corrector = stored(turned, options)
-            off = 0.0
-            for _ in range(ROUNDS if reason == LOADED else 0):
-                off = error_mdps(corrector, frames, bias)
-                if off < usual + WRONG_MDPS:
-                    break
-            return reason, off
-
-        answer, fell = in_a_child(what)
-        kind = "signals" if fell > 0 else "exceptions" if fell else ""
-        if not kind:
-            reason, off = answer
-            kind = "loaded" if reason == LOADED else "afresh"
-            assert reason in (LOADED, OUT_OF_RANGE)
-            if off > usual + WRONG_MDPS:
-                kind = "wrong"
+        answer, fell = in_a_child(lambda turned=turned: outcome(turned))
+        reason, off_mdps = answer or (None, 0.0)
+        kind = "loaded" if reason == LOADED else "afresh"
+        if fell:
+            kind = "signals" if fell > 0 else "exceptions"
+        elif off_mdps > usual_mdps + WRONG_MDPS:
+            kind = "wrong"
         tally[kind] += 1
         if kind not in ("loaded", "afresh"):
-            off = "" if fell else f", {off:.0f} mdps where {usual:.1f} are usual"
             name = named_state(settings)[at][0]
+            off = "" if fell else f", {off_mdps:.0f} mdps where {usual_mdps:.1f} are usual"
             lines.append(f"{kind}: {name}, {state[at]} became {value}{off}")
             print(lines[-1], flush=True)
     return tally, lines

@@ -8,7 +8,9 @@ import argparse
 import random
 import sys
 import types
+from contextlib import suppress
 from pathlib import Path
+from unittest.mock import patch
 
 from zerorate import checked
 from zerorate_bench.service import World
@@ -116,20 +118,13 @@ class Day(FakeClock):
 
         board = types.ModuleType("zerorate_i2c.board")
         board.setup = lambda scl, sda: MPU6050(self.bus, clock=self, odr_hz=self.odr_hz)
-        kept = {"zerorate_i2c.board": sys.modules.get("zerorate_i2c.board")}
-        sys.modules["zerorate_i2c.board"] = board
-        original, checked.CheckedCorrector = checked.CheckedCorrector, Judged
-        try:
-            text = PROGRAM.read_text(encoding="utf-8")
-            exec(compile(text, PROGRAM, "exec"), {"print": count_line, "__name__": "__main__"})
-        except EndOfDay:
-            pass
-        finally:
-            checked.CheckedCorrector = original
-            for name, module in kept.items():
-                sys.modules.pop(name)
-                if module:
-                    sys.modules[name] = module
+        text = compile(PROGRAM.read_text(encoding="utf-8"), PROGRAM, "exec")
+        with (
+            patch.dict(sys.modules, {"zerorate_i2c.board": board}),
+            patch.object(checked, "CheckedCorrector", Judged),
+            suppress(EndOfDay),
+        ):
+            exec(text, {"print": count_line, "__name__": "__main__"})
         return self.figures()
 
     def figures(self):
@@ -163,9 +158,8 @@ def main(arguments=None):
     chosen = parser.parse_args(arguments)
     found = Day(chosen.hours, chosen.resets, chosen.unplugs, chosen.odr_hz, seed=1).run()
     for name, value in found.items():
-        print(
-            f"{name:<20}{value:>12,.4g}" if isinstance(value, float) else f"{name:<20}{value:>12,}"
-        )
+        text = f"{value:,.4g}" if isinstance(value, float) else f"{value:,}"
+        print(f"{name:<20}{text:>12}")
     return 0 if passed(found) else 1
 
 
