@@ -44,7 +44,7 @@ _FIXTURES_OF_OTHERS = {
 _FIXTURES_OF_OTHERS |= {"outcome", "closed"}  # whole closings, longer than all of the budget
 _FIXTURES_OF_OTHERS |= {"others", "s3", "gs"}  # clusters and stores, whose threads no fork has
 # Tests of what starts an interpreter: that is host code, which the mutant is in.
-_STARTERS = ("test_interpreters", "test_boards")
+_STARTERS = ("test_interpreters",)
 # Seconds of processor for the tests of one mutant: what lives longer has survived. And for all.
 _BUDGET_S, _LONG_S = 10, 4
 _PATIENCE_S = 90

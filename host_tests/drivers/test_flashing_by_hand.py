@@ -15,6 +15,9 @@ from zerorate_tools.boards import compiling, flashing
 from zerorate_tools.boards.connection import BoardError, BoardFacts, ask, connected, listening
 from zerorate_tools.boards.parts import REST, chosen_parts, heap_needed, needs, part_files
 from zerorate_tools.errors import ZerorateError
+from zerorate_tools.model import Slot, build_model, write_model
+from zerorate_tools.model.term import Term
+from zerorate_tools.recordings import Scales
 
 mpremote = pytest.importorskip("mpremote.transport")
 
@@ -95,14 +98,32 @@ def test_a_file_of_any_size_arrives_byte_by_byte(flashed, size):
 
 def test_a_dry_run_writes_nothing_and_counts_what_would_be_there(flashed, monkeypatch, tmp_path):
     monkeypatch.setattr(flashing, "connected", lambda port: nullcontext(HostBoard(True)))
-    main, said = tmp_path / "a program.py", []
+    slot = Slot(Term("temp", 20, 45, 32.5, power=2), (0.001, -0.002, 0.0003))
+    scales = Scales("MPU-6050", 100.0, 131.0, 16384.0, 340.0, 36.53)
+    own = tmp_path.with_name("own")
+    readable, binary = write_model(build_model([slot], scales), own)
+    main, said = own / "a program.py", []
     main.write_bytes(b"1" * 99)
-    dry = flashing.flash("port", True, main, said.append, parts=["bursts"])
-    assert [*there()] == [PurePosixPath(main.name)] and dry.sent == []
-    main.rename(tmp_path.with_suffix(".py"))
-    done = flashing.flash("port", False, tmp_path.with_suffix(".py"), said.append, parts=["bursts"])
+    options = {"main": main, "model": readable, "say": said.append, "parts": ["bursts"]}
+    dry = flashing.flash("port", dry_run=True, **options)
+    assert there() == {} and dry.sent == []
+    done = flashing.flash("port", **options)
     assert there() == done.files == dry.files and done.files[MAIN] == 99
+    assert Path("model.bin").read_bytes() == binary.read_bytes()
+    assert {Path("lib/zerorate/bursts.py"), Path("lib/zerorate/model.py")} <= {*map(Path, there())}
     assert f"{dry.total:,}" in "".join(said) and f"{FACTS.heap_free:,}" in "".join(said)
+
+
+def test_a_package_that_arrives_damaged_replaces_nothing(flashed, monkeypatch):
+    flashed()
+    before = {path: path.read_bytes() for path in Path("lib").rglob("*.py")}
+    with monkeypatch.context() as patch:
+        patch.setattr(flashing, "b64encode", lambda data: b"AAAA")
+        with pytest.raises(BoardError, match="did not arrive whole and nothing was replaced"):
+            flashed(["motion"])
+    assert {path: path.read_bytes() for path in Path("lib").rglob("*.py")} == before
+    done, _ = flashed(["motion"])
+    assert there() == done.files and len(done.files) > len(before)
 
 
 def test_one_changed_byte_is_sent_anew_and_the_rest_of_its_package_is_copied(flashed):

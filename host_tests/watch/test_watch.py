@@ -24,7 +24,7 @@ from zerorate_tools.watch import watch
 from zerorate_tools.watch.live import Live
 from zerorate_tools.watch.own import OwnOutput
 from zerorate_tools.watch.screen import Area, Lines, WatchOptions, draw, screen
-from zerorate_tools.watch.watching import CsvTail, Watcher
+from zerorate_tools.watch.watching import CsvTail, Watcher, is_device
 
 DESCRIPTION = {
     "name": "run",
@@ -231,6 +231,9 @@ def test_a_picture_has_eight_hundred_by_four_hundred_and_fifty_points(tmp_path):
 def test_a_program_that_prints_no_bias_is_watched_and_not_drawn(tmp_path, capsys, ends):
     board, port = os.openpty()
     tty.setraw(board)
+    (tmp_path / "tty-a").symlink_to(os.ttyname(port))
+    assert is_device(str(tmp_path / "tty-a"))
+    (tmp_path / "tty-a").unlink()
     ended = threading.Event()
 
     def program():
