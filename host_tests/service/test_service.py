@@ -23,7 +23,6 @@ from zerorate_i2c.fifo import EMPTY, Fifo
 from zerorate_i2c.mpu6050 import MPU6050
 from zerorate_tools.errors import ZerorateError
 from zerorate_tools.importers import read_foreign
-from zerorate_tools.layout import AXIS, axis_at
 from zerorate_tools.model import Slot, build_model, write_model
 from zerorate_tools.model.term import Term
 from zerorate_tools.recordings import Scales
@@ -107,44 +106,6 @@ def test_a_day_in_small_teaches_nothing_wrong_and_loses_nothing(monkeypatch):
     assert found["samples"] > 0.99 * found["samples_due"]
 
 
-def test_killed_at_a_chip_that_kept_its_power_it_takes_back_all_of_the_offset(board):
-    board.live(20)
-    state, at = offsets_of(board)
-    for axis, offset_q8 in zip(at, (8000, -4000, 2000)):
-        state[axis] = offset_q8
-    assert board.service._store.save()
-    kept = restarted_offsets_q8(board)
-    board.chip.power_up()
-    lost_power = restarted_offsets_q8(board)
-    assert (kept, lost_power) == ([8000, -4000, 2000], [4000, -2000, 1000])
-
-
-def offsets_of(board):
-    """The corrector's state, and where in it is what each axis adds to its curve."""
-    learner = board.service._corrector.corrector
-    return learner.state, [axis_at(learner.settings, axis) + AXIS.OFFSET_Q8 for axis in range(3)]
-
-
-def restarted_offsets_q8(board):
-    board.restart()
-    board.service.step()
-    state, at = offsets_of(board)
-    return [state[axis] for axis in at]
-
-
-def test_while_the_bus_is_gone_it_says_so_once_and_shows_that_it_lives(board):
-    board.live(5)
-    board.bus.fault("hang", times=None)
-    board.told.clear()
-    board.live(60)
-    assert len(board.told) >= 10 and set(board.told) == {"WATCHDOG=1"}
-    assert [line for line in board.said if line.startswith("bus: ")] == board.said[1:2]
-    board.bus.mend()
-    lines = len(board.kept.lines)
-    board.live(5)
-    assert len(board.kept.lines) > lines + 75
-
-
 @pytest.mark.parametrize("number, do", [(errno.ENOENT, "ls /dev/i2c-"), (errno.EACCES, "-aG i2c")])
 def test_a_bus_that_cannot_be_opened_says_what_to_do_about_it(board, number, do):
     def closed():
@@ -169,20 +130,6 @@ def test_restarts_write_once_an_hour_at_most_whatever_ends_them(tmp_path):
     writes_us = board.file.writes_us
     assert hours - 1 <= len(writes_us) <= hours + 1
     assert min(b - a for a, b in zip(writes_us, writes_us[1:])) >= 3.6e9 - 2e6
-
-
-def test_t_us_is_true_over_an_outage_and_the_line_behind_it_is_marked(board):
-    board.live(5)
-    before, began_us = board.kept.lines[-1], board.clock.now_us
-    board.bus.fault("hang", times=None)
-    board.live(6)
-    board.bus.mend()
-    lines = len(board.kept.lines)
-    board.live(5)
-    first, last = board.kept.lines[lines], board.kept.lines[-1]
-    assert last["t_us"] - before["t_us"] == pytest.approx(board.clock.now_us - began_us, abs=8e4)
-    assert first["gap_us"] == first["t_us"] - before["t_us"] > 5e6
-    assert not any("gap_us" in line for line in board.kept.lines[lines + 1 :])
 
 
 def test_what_it_publishes_is_imported_as_the_chip_gave_it(board, tmp_path):
