@@ -23,6 +23,7 @@ from zerorate_i2c.fifo import EMPTY, Fifo
 from zerorate_i2c.mpu6050 import MPU6050
 from zerorate_tools.errors import ZerorateError
 from zerorate_tools.importers import read_foreign
+from zerorate_tools.layout import AXIS, axis_at
 from zerorate_tools.model import Slot, build_model, write_model
 from zerorate_tools.model.term import Term
 from zerorate_tools.recordings import Scales
@@ -104,6 +105,28 @@ def test_a_day_in_small_teaches_nothing_wrong_and_loses_nothing(monkeypatch):
     assert found["kills"] > found["faults"]["kill"] and found["refused_writes"] > 0
     assert found["downs"] > 10 and found["unexplained_downs"] == 0
     assert found["samples"] > 0.99 * found["samples_due"]
+
+
+def test_killed_at_a_chip_that_kept_its_power_it_takes_back_all_of_the_offset(board):
+    def offsets():
+        """The corrector's state, and where in it is what each axis adds to its curve."""
+        learner = board.service._corrector.corrector
+        places = [axis_at(learner.settings, axis) + AXIS.OFFSET_Q8 for axis in range(3)]
+        return learner.state, places
+
+    def restarted():
+        board.restart()
+        board.service.step()
+        state, places = offsets()
+        return [state[at] for at in places]
+
+    board.live(20)
+    for at, offset_q8 in zip(offsets()[1], (8000, -4000, 2000)):
+        offsets()[0][at] = offset_q8
+    assert board.service._store.save()
+    assert restarted() == [8000, -4000, 2000]
+    board.chip.power_up()
+    assert restarted() == [4000, -2000, 1000]
 
 
 @pytest.mark.parametrize("number, do", [(errno.ENOENT, "ls /dev/i2c-"), (errno.EACCES, "-aG i2c")])
