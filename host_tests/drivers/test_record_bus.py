@@ -10,6 +10,7 @@ from unittest import mock
 
 import numpy as np
 import pytest
+from numpy.lib.stride_tricks import sliding_window_view
 from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050
 from zerorate_fakes.smbus import SMBus
 from zerorate_i2c.fifo import Fifo
@@ -24,6 +25,7 @@ from zerorate_tools.boards.recording import record, stream
 from zerorate_tools.errors import InFile, ZerorateError
 from zerorate_tools.recordings import Recording, Scales, growing, read_recording
 from zerorate_tools.recordings.recording import GYRO
+from zerorate_tools.simulate import simulate
 
 from host_tests.drivers.linux_bus.machine import fetch, run_guest
 
@@ -211,14 +213,17 @@ def test_the_command_ends_with_1_where_every_sample_is_in_doubt(machine, monkeyp
     assert list(machine.out.parent.iterdir()) == []
 
 
-def test_an_emulated_chip_is_recorded_for_no_longer_than_its_hand_moves(tmp_path, monkeypatch):
+def test_an_emulated_chip_is_recorded_as_the_hand_moves_and_no_longer(tmp_path, monkeypatch):
     bus, clock, seconds = fake_hand.in_hand()
-    assert seconds > 100
     monkeypatch.setattr(fake_hand, "in_hand", lambda: (bus, clock, 2.0))
+    out, hand = tmp_path / "run.csv", simulate("in-hand")[0]
+    assert seconds == pytest.approx((len(hand) - 1) / hand.scales.odr_hz)
+    moved = hand.columns["gx"][:900]
     for words in ([], ["--seconds", "3"]):
-        out = tmp_path / f"run{len(words)}.csv"
         assert cli.main(["record", "fake:", "--out", str(out), *words]) == 0
-        assert out.read_text().count("\n") in range(190, 210)
+        felt = read_recording(out).columns["gx"]
+        assert len(felt) in range(190, 210)
+        assert (sliding_window_view(moved, len(felt)) == felt).all(axis=1).sum() == 1
 
 
 def test_an_older_recording_stays_where_no_sample_comes(machine):

@@ -82,7 +82,6 @@ class FakeMPU6050:
         self.shadowed = True
         self.frozen = False
         self.interrupt: "Callable[[], object] | None" = None
-        self.reserved_writes: "list[tuple[int, int]]" = []
         self.self_test_response = [0] * 7
         self._size_chosen = part in ("ICM-20689", "ICM-20690")
         self._access = access_of(ranges)
@@ -188,8 +187,6 @@ class FakeMPU6050:
             self._awake_us = 0
             self._phase_us = 0
         if register == _SIGNAL_PATH_RESET:
-            if value & 0xF8:
-                self.reserved_writes.append((register, value))
             value = 0
         if register == _FIFO_R_W:
             self.fifo.put(value)

@@ -31,7 +31,6 @@ class BusWires:
         self._bus = bus
         self._driven = {"scl": 1, "sda": 1}
         self._bits = bus.sda_held_bits
-        self.clocks = 0
         self.scl = FakePin(self, "scl")
         self.sda = FakePin(self, "sda")
 
@@ -47,7 +46,6 @@ class BusWires:
         self._driven[name] = level
         rose = not before and self.level(name)
         if name == "scl" and rose:
-            self.clocks += 1
             self._bits = max(0, self._bits - 1)
         if name == "sda" and rose and self._driven["scl"]:
             self._bus.sda_held_bits = 0

@@ -6,7 +6,7 @@ import numpy as np
 from zerorate_fakes import FakeClock, FakeI2C, Physical
 
 from ..recordings import Recording
-from ..recordings.recording import ACCEL, GYRO
+from ..recordings.recording import ACCEL, GYRO, TIME
 from ..simulate import simulate
 from .fake_chip import fake_chip
 
@@ -28,7 +28,7 @@ def in_hand(address: int = 0x68, part: str | None = None) -> tuple[FakeI2C, Fake
     clock = FakeClock()
     chip = fake_chip(felt, part)
     clock.devices.append(chip)
-    seconds = (len(recording) - 1) / scales.odr_hz
+    seconds = float(recording.columns[TIME][-1]) * 1e-6
     return FakeI2C({address: chip}, clock=clock), clock, seconds
 
 

@@ -145,7 +145,12 @@ def _imported(path: Path, node: ast.ImportFrom) -> Path:
 def _constants() -> dict[Path, dict[str, int]]:
     """File -> the numbers that it has by public names."""
     return {
-        path: {name: value for node in tree.body for name, value in _const(node) if name[0] != "_"}
+        path: {
+            name: value
+            for node in tree.body
+            for name, value in _const(node)
+            if not name.startswith("_")
+        }
         for path, tree in _trees().items()
     }
 
