@@ -104,22 +104,6 @@ class CsvTail:
         return good
 
 
-class Finished:
-    """A recording of any form that grows no more, read as a CsvTail is."""
-
-    bad_rows = restarts = 0
-
-    def __init__(self, path: Path) -> None:
-        recording = open_recording(path)
-        self.name, self.scales = path.name, recording.scales
-        self.column_names = recording.column_names
-        self._batches = recording.batches()
-
-    def read(self) -> Columns | None:
-        """The next batch, None behind the last. Raises BadRecording."""
-        return next(self._batches, None)
-
-
 def _parsed(rows: bytes, names: list[str]) -> Columns:
     table = pyarrow.csv.read_csv(
         io.BytesIO(rows),
@@ -207,8 +191,9 @@ def watch(source: str, options: WatchOptions | None = None) -> Shown | None:
     if is_device(source):
         return watch_board(source, options)
     path = Path(source)
-    is_whole = options.once and path.is_file() and path.name.endswith(tuple(_WHOLE_ALONE))
-    tail = Finished(path) if is_whole else CsvTail(path)
+    if options.once and path.is_file() and path.name.endswith(tuple(_WHOLE_ALONE)):
+        return _watch_finished(path, options)
+    tail = CsvTail(path)
     with screen(options.plain) as shown:
         following = Following(tail, options, shown)
         try:
@@ -219,6 +204,17 @@ def watch(source: str, options: WatchOptions | None = None) -> Shown | None:
         return following.live if following.live.samples else None
 
 
+def _watch_finished(path: Path, options: WatchOptions) -> Live | None:
+    recording = open_recording(path)
+    names, scales = recording.column_names, recording.scales
+    live = Live(path.name, scales, names, options.settings, options.model)
+    for columns in recording.batches():
+        live.feed(columns)
+    with screen(options.plain) as shown:
+        shown.show(live, [])
+    return live if live.samples else None
+
+
 def is_device(source: str) -> bool:
     """Whether the source is a port or a bus: by its name, or a device under any other name."""
     return source == FAKE or bool(_DEVICE.fullmatch(source)) or Path(source).is_char_device()
@@ -227,7 +223,7 @@ def is_device(source: str) -> bool:
 class Following:
     """A growing file, the firmware on it, and the screen."""
 
-    def __init__(self, tail: CsvTail | Finished, options: WatchOptions, shown: Screen) -> None:
+    def __init__(self, tail: CsvTail, options: WatchOptions, shown: Screen) -> None:
         self.tail, self.options, self._shown = tail, options, shown
         self.live = self._fresh()
         self._begun = self._grown = self._looked = time.monotonic()
