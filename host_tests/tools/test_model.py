@@ -119,12 +119,16 @@ def test_what_is_built_differs_from_what_was_wanted_by_rounding_alone():
         ([SLOTS[4]] * 3, "room for 2 delays"),
         ([SLOTS[3]] * 3, "room for 2 tables"),
         ([replace(SLOTS[3], term=replace(SLOTS[3].term, table=(2.0,) * 9))], "within -1..1"),
-        ([replace(SLOTS[0], coefficient_dps=(1e3, 0, 0))], "could move the rate by"),
         ([Slot(Term("temp", lag_mode="lag", lag_s=1e9), (1e-3,) * 3)], "too long"),
         ([Slot(Term("x", lag_mode="lag", lag_s=9, memory="peak"), (1e-6,) * 3)], "both a lag"),
         ([Slot(Term("x", power=0.5), (1e-6,) * 3)], "power 0.5"),
         ([Slot(PLAY, (1e-3,) * 3)] * 2, "twice"),
-        ([Slot(replace(PLAY, power=3), (1e-3,) * 3)], "itself and its square"),
+        *(
+            ([Slot(replace(PLAY, **more), (1e-3,) * 3)], "itself and its square, nothing else")
+            for more in ({"power": 3}, {"decay_s": 9}, {"table": TABLE})
+        ),
+        ([Slot(Term("one", memory="play"), (1, 0, 0))], "constant does nothing"),
+        ([Slot(Term("temp", 20, 45, 20), (2000, 0, 0))], "could move the rate by 96376 dps"),
         ([Slot(replace(PLAY, width=w), (1e-3,) * 3) for w in range(7)], "room for 6 play"),
     ],
 )

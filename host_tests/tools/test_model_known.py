@@ -7,11 +7,10 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from zerorate_tools.model import Binding, CannotDeploy, Slot, build_model, encoded
+from zerorate_tools.model import Binding, Slot, build_model, encoded
 from zerorate_tools.model.effects import EFFECTS, is_free, table_of
 from zerorate_tools.model.model import binding_of
 from zerorate_tools.model.model_in_words import basis_in_words, differences, in_words
-from zerorate_tools.model.plays import split
 from zerorate_tools.model.term import Term, evaluate
 from zerorate_tools.recordings import Scales
 
@@ -40,11 +39,7 @@ FAST = [
 
 @pytest.mark.parametrize(
     ("slots", "tick_s", "size", "crc"),
-    [
-        (EVERY, 1.0, 1331, 1404085548),
-        (FAST, 2.0, 738, 202663907),
-        (SLOTS, 0.5, 950, 686748055),
-    ],
+    [(EVERY, 1.0, 1331, 1404085548), (FAST, 2.0, 738, 202663907), (SLOTS, 0.5, 950, 686748055)],
 )
 def test_a_model_has_the_bytes_that_boards_already_read(slots, tick_s, size, crc):
     data = encoded(build_model(slots, SCALES, binding=BINDING, tick_s=tick_s))
@@ -103,24 +98,6 @@ def test_a_table_reaches_from_minus_one_to_one_and_is_free_unless_a_row_has_it()
     assert table_of(lambda v: 3 * v, 10, 18) == pytest.approx(np.linspace(-1, 1, 9))
     assert math.isnan(table_of(lambda v: 0 * v, 0, 1)[0])
     assert is_free(Term("load", 0, 1, table=TABLE)) and not is_free(Term("load", 0, 1))
-
-
-@pytest.mark.parametrize(
-    ("slots", "why"),
-    [
-        ([replace(s, term=PLAY) for s in EVERY[:2]], "there twice"),
-        ([Slot(replace(PLAY, power=3), (1, 0, 0))], "nothing else"),
-        ([Slot(replace(PLAY, decay_s=9), (1, 0, 0))], "nothing else"),
-        ([Slot(replace(PLAY, table=TABLE), (1, 0, 0))], "nothing else"),
-        ([Slot(Term("one", memory="play"), (1, 0, 0))], "constant does nothing"),
-        ([Slot(Term("temp", 20, 45, 20), (2000, 0, 0))], "could move the rate by 96376 dps"),
-    ],
-)
-def test_what_a_slot_or_a_play_operator_cannot_do_is_said(slots, why):
-    """A play operator has itself and its square, once."""
-    with pytest.raises(CannotDeploy, match=why):
-        build_model(slots, SCALES)
-    assert len(split(EVERY)[1]) == 2
 
 
 def test_a_slot_in_words_says_each_of_its_steps():

@@ -4,6 +4,7 @@ import struct
 import zlib
 from collections.abc import Callable, Container, Sequence
 from dataclasses import replace
+from itertools import accumulate
 from os import PathLike
 from typing import Any
 
@@ -40,7 +41,8 @@ _INPUT, _SLOT, _TABLE = struct.Struct("<3i"), struct.Struct("<30i"), struct.Stru
 _PLAY = struct.Struct("<13i")
 _KINDS = (*FRAME, VIBRATION, TIME, ONE, *FAST)
 _FIRST_CHANNEL = 16
-_ANY = 255
+#: The code of what is not known.
+ANY = 255
 _Q24 = 1 << 24
 
 
@@ -95,7 +97,7 @@ def encoded(model: Model) -> bytes:
     head = _HEAD.pack(
         *(b"ZRM", VERSION_WITH_PLAYS if plays else VERSION, size, len(plain), len(model.inputs)),
         *(len(tables), len(channels), len(plays)),
-        *(_ANY if code is None else code for code in _codes(model.binding)),
+        *codes_of(model.binding),
         model.tick_us,
         *_doubles(model.scales),
     )
@@ -129,19 +131,16 @@ def _checked_head(data: bytes, path: str | PathLike[str]) -> tuple[Any, ...]:
 
 def _decoded_body(data: bytes, head: tuple[Any, ...]) -> Model:
     n_slots, n_inputs, n_tables, n_channels, n_plays = head[3:8]
-    at = _HEAD.size
-    raw_inputs = [_INPUT.unpack_from(data, at + _INPUT.size * i) for i in range(n_inputs)]
-    at += _INPUT.size * n_inputs
-    rows = [_SLOT.unpack_from(data, at + _SLOT.size * i) for i in range(n_slots)]
-    at += _SLOT.size * n_slots
-    tables = [_TABLE.unpack_from(data, at + _TABLE.size * i) for i in range(n_tables)]
-    at += _TABLE.size * n_tables
-    plays = [_PLAY.unpack_from(data, at + _PLAY.size * i) for i in range(n_plays)]
-    texts = _texts(data, at + _PLAY.size * n_plays)
+    forms = (_INPUT, n_inputs), (_SLOT, n_slots), (_TABLE, n_tables), (_PLAY, n_plays)
+    ends = [*accumulate((form.size * number for form, number in forms), initial=_HEAD.size)]
+    raw_inputs, rows, tables, plays = (
+        [*form.iter_unpack(data[a:b])] for (form, _), a, b in zip(forms, ends, ends[1:])
+    )
+    texts = _texts(data, ends[-1])
     sensor, channels, effects = texts[0], texts[1 : 1 + n_channels], texts[1 + n_channels :]
     inputs = tuple(_input(raw, channels) for raw in raw_inputs)
     scales = _scales(sensor, head[13:18])
-    model = Model((), scales, Binding(*(None if c == _ANY else c for c in head[8:12])), head[12])
+    model = Model((), scales, Binding(*(None if c == ANY else c for c in head[8:12])), head[12])
     model = replace(model, inputs=inputs)
     slots = []
     for row, effect in zip(rows, effects[:n_slots], strict=True):
@@ -211,12 +210,13 @@ def _input(raw: Sequence[int], channels: Sequence[str]) -> Input:
     kind, shift, offset = raw
     if kind >= _FIRST_CHANNEL:
         now, at = divmod(kind - _FIRST_CHANNEL, MOST_CHANNELS)
-        return Input(channels[at], (False, True)[now], shift, offset)
+        return Input(channels[at], bool(now), shift, offset)
     return Input(_KINDS[kind], kind > _KINDS.index(ONE), shift, offset)
 
 
-def _codes(binding: Binding) -> tuple[int | None, ...]:
-    return binding.chip_id, binding.gyro_range, binding.accel_range, binding.filter
+def codes_of(binding: Binding) -> bytes:
+    """The four codes as a file and a device hold them."""
+    return bytes(ANY if code is None else code for code in vars(binding).values())
 
 
 def _doubles(scales: Scales) -> tuple[float, ...]:

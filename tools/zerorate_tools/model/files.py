@@ -17,7 +17,7 @@ from ..errors import BadModel
 from ..recordings import Scales
 from ..recordings.atomic import written_together
 from ..recordings.drafts import settle
-from .binary import decoded, encoded
+from .binary import ANY, codes_of, decoded, encoded
 from .model import Binding, CannotDeploy, Input, Model, Slot
 from .model_in_words import differences
 from .term import Term
@@ -163,9 +163,6 @@ def _string(value: Any, name: str) -> str:
     return value
 
 
-_ANY = 255
-
-
 def read_model(path: str | PathLike[str]) -> Model:
     """The model in a model.bin or model.json, told apart by what is in it. Raises BadModel.
 
@@ -209,17 +206,9 @@ def check_model(
         if differ:
             problem = f"is not the twin of {twin.name}: {differ[0]}"
             raise BadModel(path, problem, do="write both again")
-    own = model.binding
-    theirs = device or Binding()
-    codes = bytes(
-        mine if mine is not None and asked is None else (_ANY if asked is None else asked)
-        for mine, asked in (
-            (own.chip_id, theirs.chip_id),
-            (own.gyro_range, theirs.gyro_range),
-            (own.accel_range, theirs.accel_range),
-            (own.filter, theirs.filter),
-        )
-    )
+    # of what a device does not say, it is taken to be as the model says
+    known = zip(codes_of(device or Binding()), codes_of(model.binding))
+    codes = bytes(mine if asked == ANY else asked for asked, mine in known)
     reason = EffectModel().load(encoded(model), sensor_for(scales or model.scales), codes)
     if reason != LOADED:
         raise BadModel(path, f"refused by the firmware: {REASONS[reason]}", do=_ADVICE)

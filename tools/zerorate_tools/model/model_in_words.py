@@ -6,10 +6,9 @@ from dataclasses import replace
 import numpy as np
 
 from .binary import encoded
-from .model import Model, Slot, is_channel
+from .model import RATES, Model, Slot, is_channel
 from .term import Term
 
-_RATES = ("rate_x", "rate_y", "rate_z")
 #: Flight controllers that have no such parameter, and what they do with a gyroscope's readings.
 _WITHOUT = (
     "Betaflight, iNav: no setting takes it. They subtract gyroZero (iNav: gyro_zero_x, _y, _z) "
@@ -23,8 +22,8 @@ def rate_matrix(model: Model) -> np.ndarray | None:
     """(3, 3) C of `corrected = C measured`, what the rate slots do; None without such slots."""
     found = np.zeros((3, 3))
     for slot in model.slots:
-        if slot.term.source in _RATES and _is_plain(slot.term):
-            found[:, _RATES.index(slot.term.source)] += slot.coefficient_dps
+        if slot.term.source in RATES and _is_plain(slot.term):
+            found[:, RATES.index(slot.term.source)] += slot.coefficient_dps
     return np.eye(3) - found if found.any() else None
 
 
@@ -177,30 +176,27 @@ def _numbers(slot: Slot) -> Iterator[str]:
 
 def differences(one: Model, other: Model) -> list[str]:
     """What differs between two models, a line each; none where their model.bin are the same."""
-    found = _fields("scales", vars(one.scales), vars(other.scales))
-    found += _fields("binding", vars(one.binding), vars(other.binding))
-    found += _fields("", {"tick_us": one.tick_us}, {"tick_us": other.tick_us})
-    found += _fields("", {"inputs": one.inputs}, {"inputs": other.inputs})
+    found = _fields("scales: ", vars(one.scales), vars(other.scales))
+    found += _fields("binding: ", vars(one.binding), vars(other.binding))
+    found += _fields("", *({n: getattr(m, n) for n in ("tick_us", "inputs")} for m in (one, other)))
     for i in range(max(len(one.slots), len(other.slots))):
-        where = f"slot {i + 1}"
+        where = f"slot {i + 1}: "
         if i >= len(one.slots):
-            found.append(f"{where}: only in the second: {basis_in_words(other.slots[i])}")
+            found.append(f"{where}only in the second: {basis_in_words(other.slots[i])}")
         elif i >= len(other.slots):
-            found.append(f"{where}: only in the first: {basis_in_words(one.slots[i])}")
+            found.append(f"{where}only in the first: {basis_in_words(one.slots[i])}")
         else:
             found += _fields(where, _flat(one.slots[i]), _flat(other.slots[i]))
     return found
 
 
 def _flat(slot: Slot) -> dict[str, object]:
-    values = {**vars(slot), **vars(slot.term)}
-    values.pop("term")
-    return values
+    return {n: of for n, of in {**vars(slot), **vars(slot.term)}.items() if n != "term"}
 
 
 def _fields(where: str, one: dict[str, object], other: dict[str, object]) -> list[str]:
     return [
-        f"{where}{': ' if where else ''}{name}: {one[name]} and {other[name]}"
+        f"{where}{name}: {one[name]} and {other[name]}"
         for name in one
         if one[name] != other[name] and name != "more"
     ]
