@@ -10,11 +10,10 @@ from zerorate_bench.loop.devices import describe
 from zerorate_tools import LoopReport
 from zerorate_tools.closing import close
 from zerorate_tools.loop.motion.by_windows import _tilt, by_windows
-from zerorate_tools.loop.motion.columns import ACCEL_BIAS, BIAS, MATRIX, OWN, columns_of
+from zerorate_tools.loop.motion.columns import BIAS, OWN, columns_of
 from zerorate_tools.loop.motion.device import DifferentDevices, Shown, device_of
 from zerorate_tools.loop.motion.matrix import beside
 from zerorate_tools.loop.motion.moving import moving_of
-from zerorate_tools.loop.motion.windows import OVERLAP, tapers
 from zerorate_tools.loop.read.gate import CannotClose
 from zerorate_tools.recordings import Recording, Scales
 from zerorate_tools.recordings.writing import write_recording
@@ -179,63 +178,12 @@ def test_a_recording_that_neither_rests_nor_turns_is_refused(recorded, tmp_path)
         close([recorded(12, np.zeros((3, 3)), dps=2.0)], tmp_path / "closed")
 
 
-def test_motion_of_one_window_shows_nothing_as_nothing_is_left_to_judge_on(recorded):
-    assert by_windows([moving_of(recorded(13, _MATRIX, minutes=0.2))], []) is None
-
-
 def test_a_gap_of_days_leaves_the_motion_before_and_after_it(recorded):
     whole = moving_of(recorded(13, _MATRIX, minutes=3.0))
     late = np.arange(len(whole.at_s)) > len(whole.at_s) // 2
     parted = replace(whole, at_s=whole.at_s + 2e5 * late)
     assert parted.dt_s == pytest.approx(1 / _HZ)
     np.testing.assert_allclose(by_windows([parted], []).matrix, _MATRIX, atol=0.003)
-
-
-def test_a_sample_lost_now_and_then_stretches_the_time_between_samples_by_its_share(recorded):
-    whole = moving_of(recorded(13, _MATRIX, minutes=1.0))
-    late = np.arange(len(whole.at_s)) // 100
-    assert replace(whole, at_s=whole.at_s + late / _HZ).dt_s == pytest.approx(1.01 / _HZ, rel=1e-3)
-
-
-def test_motion_in_pieces_shorter_than_a_window_shows_nothing(recorded):
-    whole = moving_of(recorded(13, _MATRIX, minutes=2.0))
-    piece_s = 5.0 * (np.arange(len(whole.at_s)) // 20)
-    assert by_windows([replace(whole, at_s=whole.at_s + piece_s)], []) is None
-
-
-def test_a_recording_that_differs_from_the_rest_widens_what_is_said_of_the_device():
-    alike = [Shown(np.eye(9) * 1e8, np.full(9, 1e8 * x)) for x in (0.001, 0.001, 0.001)]
-    apart = [*alike[:2], Shown(np.eye(9) * 1e8, np.full(9, 1e8 * 0.005))]
-    sigma = [np.sqrt(np.diag(device_of(s).covariance)).max() for s in (alike, apart)]
-    assert sigma[0] < 1e-4 and sigma[1] > 5e-4
-
-
-def test_hours_of_samples_give_the_same_columns_in_parts_as_at_once(recorded, monkeypatch):
-    moving = moving_of(recorded(14, _MATRIX, minutes=1.0))
-    nothing = np.zeros((3, 3)), np.zeros(sum(OWN.values()))
-    parts = columns_of(moving, *nothing)
-    monkeypatch.setattr("zerorate_tools.loop.motion.columns._CHUNK", 1 << 20)
-    once = columns_of(moving, *nothing)
-    np.testing.assert_allclose(parts.theta, once.theta, atol=1e-9)
-    np.testing.assert_allclose(parts.seen, once.seen, atol=1e-9)
-
-
-def test_what_an_error_has_turned_is_told_at_the_middle_of_a_step(recorded):
-    moving = moving_of(recorded(15, np.zeros((3, 3)), minutes=0.5))
-    nothing = np.zeros((3, 3)), np.zeros(sum(OWN.values()))
-    columns = columns_of(replace(moving, rate=np.zeros_like(moving.rate)), *nothing)
-    per, bias_of_z = columns.at[1], 11
-    turned_s = -columns.theta[:, 2, bias_of_z]
-    np.testing.assert_allclose(turned_s, (columns.at + (per + 1) / 2) / _HZ, rtol=1e-3)
-
-
-def test_on_a_floor_an_axis_turned_is_no_different_from_an_accelerometers_bias(recorded):
-    moving = moving_of(recorded(16, np.zeros((3, 3)), about=(0.0, 0.0, 1.0), minutes=3.0))
-    moving = replace(moving, accel=np.zeros_like(moving.accel) + [0.0, 0.0, 1.0])
-    columns = beside(moving, np.zeros((3, 3))).rows.columns
-    turned, bias = columns[..., 2].ravel(), columns[..., MATRIX + ACCEL_BIAS.start].ravel()
-    cosine = turned @ bias / np.sqrt((turned @ turned) * (bias @ bias))
-    assert 1.0 - abs(cosine) < 1e-4  # 3e-4 where the turn is half a sample late
 
 
 def test_a_slow_recording_may_end_with_one_sample_more_than_it_is_read_in(recorded):
@@ -253,46 +201,9 @@ def test_a_few_bouts_of_a_hand_that_pushes_as_it_turns_show_no_matrix(tmp_path):
     assert shown.runs > 8 and not shown.found  # it was told 8 % of cross-axis sensitivity
 
 
-def test_even_shaking_on_a_floor_says_nothing_of_the_scale_about_the_vertical(recorded):
-    moving = moving_of(recorded(18, np.zeros((3, 3)), about=(0.0, 0.0, 1.0), minutes=3.0))
-    shaken = np.random.default_rng(1).normal([0.0, 0.0, 1.0], 0.02, moving.accel.shape)
-    said = beside(replace(moving, accel=shaken), np.zeros((3, 3))).shown(np.zeros((3, 3)))
-    assert said.normal[8, 8] < 0.05**-2  # a sigma of 0.015 where shaking, turned, is in the columns
-
-
 def test_a_loud_recording_that_hides_tilts_does_not_outweigh_a_quiet_one_when_judged():
     quiet, loud = np.array([[2.0, 100.0]]), np.array([[300.0, 0.001]])
     assert _tilt([quiet, loud]) == pytest.approx(2.2, abs=0.1)
-
-
-def test_rows_of_overlapping_windows_count_every_wave_once():
-    at_s = np.arange(4000) / 10.0
-    wave = np.sin(2 * np.pi * 0.23 * at_s) * np.exp(-(((at_s - 200.0) / 30.0) ** 2))
-    rows, _ = tapers(400, 40.0)
-    seen = [rows @ wave[a : a + 400] for a in range(0, 3601, 100)]
-    assert OVERLAP * np.square(seen).sum() == pytest.approx(wave @ wave, rel=0.02)
-
-
-def test_a_hand_that_is_loud_for_a_while_hides_nothing_of_when_it_was_quiet(recorded):
-    moving = moving_of(recorded(20, _MATRIX))
-    loud = np.zeros_like(moving.accel)
-    bout = slice(len(loud) // 2, len(loud) // 2 + 2000)
-    loud[bout] = gaussian_filter1d(np.random.default_rng(20).normal(0, 0.1, (2000, 3)), 40, axis=0)
-    quiet, shaken = [
-        beside(m, _MATRIX).shown(_MATRIX).normal.trace()
-        for m in (moving, replace(moving, accel=moving.accel + loud))
-    ]
-    assert shaken > 0.2 * quiet  # 0.04 with one loudness for all
-
-
-def test_without_a_rest_strides_that_are_no_sines_do_not_pass_for_a_bias(recorded, tmp_path):
-    recording = handled(21, np.zeros((3, 3)), dps=10.0)
-    stride = np.cos(2 * np.pi * 0.9 * recording.columns["t_us"] * 1e-6)
-    recording.columns["gx"] += np.rint(3280 * (stride**2 - 0.5)).astype(np.int64)
-    recording.columns["gx"] += np.rint(3280 * (stride**4 - 0.375)).astype(np.int64)
-    write_recording(recording, tmp_path / "run.parquet")
-    offset = np.degrees(moving_of(tmp_path / "run.parquet").offset[0])
-    assert offset == pytest.approx(0.4, abs=1.0)  # the median is -12
 
 
 def test_one_turn_between_two_rests_is_told_by_gravity_before_and_after_it(recorded):
@@ -302,13 +213,6 @@ def test_one_turn_between_two_rests_is_told_by_gravity_before_and_after_it(recor
     rests = replace(moving, rate=np.where(still[:, None], 0.0, moving.rate), still=still)
     found = [beside(m, np.zeros((3, 3))).rows.there[:, -1].sum() for m in (moving, rests)]
     assert found == [0, 1]
-
-
-def test_an_accelerometers_bias_is_taken_out_before_gravity_is_asked(recorded):
-    moving = moving_of(recorded(17, np.zeros((3, 3)), minutes=3.0))
-    wrong = np.array([0.05, -0.04, 0.03])
-    fitted = beside(replace(moving, accel=moving.accel + wrong), np.zeros((3, 3)))
-    np.testing.assert_allclose(fitted.own[ACCEL_BIAS], wrong, atol=0.002)
 
 
 @pytest.mark.parametrize(("precision", "share"), [(1e4, 0.0), (1e8, 1.0)])

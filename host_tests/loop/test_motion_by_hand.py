@@ -53,13 +53,7 @@ def test_recordings_are_of_two_devices_beyond_one_chance_in_a_million_of_all_spl
 
 @pytest.mark.parametrize(
     ("beside", "tilted", "is_planar"),
-    [
-        (0.0, 0.0, True),
-        (0.09, 0.0, True),
-        (0.11, 0.0, False),
-        (0.0, 0.09, True),
-        (0.0, 0.11, False),
-    ],
+    [(0, 0, True), (0.09, 0, True), (0.11, 0, False), (0, 0.09, True), (0, 0.11, False)],
 )
 def test_who_turns_about_one_axis_in_one_pose_moves_in_a_plane(beside, tilted, is_planar):
     at_s, accel = np.arange(3000) / 50, np.zeros((3000, 3))
@@ -163,22 +157,33 @@ def test_a_delay_is_told_of_eight_half_minutes_in_motion_and_more(ticks, still, 
         assert scales_and_timing.timing_of([(products, 1.0), (0 * products, 1.0)]) is None
 
 
-def test_what_is_said_of_motion_without_a_matrix():
-    nothing = by_windows.nothing_in_words
-    assert nothing(1.234, by_windows.UNIT[by_windows.GIVEN]) == (
-        "nothing in motion; the reference sees 1.23 degrees a minute of turn"
-    )
-    assert "gravity sees 1.23" in nothing(1.234, by_windows.UNIT[by_windows.GRAVITY])
+@pytest.mark.parametrize(
+    ("reference", "after", "unseen", "found"),
+    [
+        *((by_windows.GIVEN, 6.1, 8, True), (by_windows.GIVEN, 6.2, 8, False)),
+        *((by_windows.GRAVITY, 6.01, 0, False), (by_windows.GRAVITY, 5.9, 0, True)),
+        (by_windows.GIVEN, 6.1, 9, False),
+    ],
+)
+def test_a_matrix_is_found_where_some_of_it_is_seen_and_a_heading_is_hardly_worse(
+    monkeypatch, reference, after, unseen, found
+):
+    """A heading that is given scatters by 2 percent."""
+    large = np.full((3, 3), 0.05), np.full((3, 3), 0.01), 1e-9, "scale-factor", reference
+    seen = np.full(3, 300.0), np.arange(9).reshape(3, 3) < unseen
+    unit = by_windows.UNIT[reference]
+    shown = by_windows.RateScale(*large, np.ones(2), 2.0, 1.0, unit, 40, *seen, 1.0)
+    monkeypatch.setattr(by_windows, "heading_lost", lambda judged: (6.0, after))
+    assert by_windows._judged_by_heading(shown, [], []).found is found
+    assert f"sees 1.23 {unit}" in by_windows.nothing_in_words(1.234, unit)
 
 
 @pytest.mark.parametrize(
     ("sizes", "sigma", "kind"),
     [
         *(((1.0, 0.09, 0.09), 1e-4, "scale-factor"), ((1.0, 0.11, 0.09), 1e-4, "+cross-axis")),
-        *(
-            ((0.09, 0.11, 1.0), 1e-4, "cross-axis+turned-axes"),
-            ((0.0, 0.0, 1.0), 0.1, "turned-axes"),
-        ),
+        ((0.09, 0.11, 1.0), 1e-4, "cross-axis+turned-axes"),
+        ((0.0, 0.0, 1.0), 0.1, "turned-axes"),
         *(((1.0, 1.0, 1.0), 0.1, "+cross-axis+turned-axes"), ((1.0, 1.0, 1.0), 9.0, "+cross-axis")),
     ],
 )
@@ -214,12 +219,11 @@ def test_a_recording_says_nothing_of_motion_without_turns_or_what_sees_them(tmp_
     bare = written(tmp_path, without_acceleration)
     assert moving_of(bare) is None
     assert moving_of(written(tmp_path, dps=0.5)) is None
-    assert (
-        moving_of(written(tmp_path, lambda columns: {n: c[:15] for n, c in columns.items()}))
-        is None
+    fifteen, sixteen = (
+        moving_of(written(tmp_path, lambda columns, n=n: {k: c[:n] for k, c in columns.items()}))
+        for n in (15, 16)
     )
-    few = moving_of(written(tmp_path, lambda columns: {n: c[:16] for n, c in columns.items()}))
-    assert len(few.rate) == 16 and few.given is None
+    assert fifteen is None and len(sixteen.rate) == 16 and sixteen.given is None
 
 
 def test_true_rates_beside_a_recording_are_an_attitude_where_most_are_known(tmp_path):

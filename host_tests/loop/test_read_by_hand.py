@@ -10,16 +10,8 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 from zerorate_tools.loop.read import blocks, lines, sessions
 from zerorate_tools.loop.read.bad_readings import BadReadings
-from zerorate_tools.loop.read.reference import (
-    Reference,
-    attitude_names,
-    declared,
-)
-from zerorate_tools.loop.read.sessions import (
-    Session,
-    block_basis,
-    common_sources,
-)
+from zerorate_tools.loop.read.reference import Reference, attitude_names, declared
+from zerorate_tools.loop.read.sessions import Session, block_basis, common_sources
 from zerorate_tools.model.term import Term, play
 from zerorate_tools.recordings.checks import GAP
 

@@ -2,7 +2,6 @@
 
 import json
 from collections.abc import Callable, Mapping
-from os import PathLike
 from pathlib import Path
 from typing import Any
 
@@ -10,18 +9,18 @@ from .closing_in_motion import shown_in_motion, write_in_motion
 from .errors import ZerorateError
 from .loop.analyse import analyse, sessions_of
 from .loop.read.gate import CannotClose, TooLittleRest
-from .loop.read.ticks import read_ticks, tick_seconds
+from .loop.read.ticks import AnyPath, read_ticks, tick_seconds
 from .loop.report.report import as_json, report
 from .loop.report.result import LoopReport
 from .loop.verify.analysis import Analysis
 from .loop.verify.run_kernels import run_and_prune
 from .model import write_model
-from .recordings.atomic import written_beside, written_together
+from .recordings.atomic import written_together
 
 
 def load(
-    logs: list[str | PathLike[str]],
-    holdout: str | PathLike[str] | None = None,
+    logs: list[AnyPath],
+    holdout: AnyPath | None = None,
     advance: Callable[[float], None] = lambda n: None,
 ) -> Analysis:
     """Read recordings of one device and run the loop. Raises ZerorateError.
@@ -33,18 +32,15 @@ def load(
         ticks.append(read_ticks(log, tick_s))
         advance(1)
     sessions, gate = sessions_of(ticks)
-    at = None
-    if holdout is not None:
-        at = _index(holdout, logs, [t.name for t in ticks], [s.name for s in sessions])
+    at = _index(holdout, logs, [t.name for t in ticks], [s.name for s in sessions])
     return analyse(sessions, at, gate, {t.name: log for t, log in zip(ticks, logs)})
 
 
 def _index(
-    holdout: str | PathLike[str],
-    logs: list[str | PathLike[str]],
-    names: list[str],
-    kept: list[str],
-) -> int:
+    holdout: AnyPath | None, logs: list[AnyPath], names: list[str], kept: list[str]
+) -> int | None:
+    if holdout is None:
+        return None
     paths = [Path(log) for log in logs]
     at = next(
         (i for i, p in enumerate(paths) if p == Path(holdout) or p.name == str(holdout)), None
@@ -59,9 +55,9 @@ def _index(
 
 
 def close(
-    logs: list[str | PathLike[str]],
-    out: str | PathLike[str],
-    holdout: str | PathLike[str] | None = None,
+    logs: list[AnyPath],
+    out: AnyPath,
+    holdout: AnyPath | None = None,
     advance: Callable[[float], None] = lambda n: None,
     online: bool = False,
 ) -> LoopReport:
@@ -82,35 +78,33 @@ def close(
         corrected = folder / "corrected.parquet"
         analysis, model = run_and_prune(analysis, logs, corrected, online, advance)
         write_model(model, folder)
-        result = json.loads(json.dumps(report(analysis), default=as_json))
-        _write_json(folder, result)
+        result = _written(report(analysis), folder)
         write_report(analysis, result, logs, folder)
     return result
 
 
 def _close_in_motion(
-    logs: list[str | PathLike[str]],
-    out: str | PathLike[str],
-    holdout: str | PathLike[str] | None,
+    logs: list[AnyPath],
+    out: AnyPath,
+    holdout: AnyPath | None,
     advance: Callable[[float], None],
     problem: TooLittleRest,
 ) -> LoopReport:
     """Close the loop on what motion shows; the problem is raised where it shows nothing."""
     ticks = [read_ticks(log) for log in logs]
     names = [t.name for t in ticks]
-    at = None if holdout is None else _index(holdout, logs, names, names)
+    at = _index(holdout, logs, names, names)
     shown = shown_in_motion(ticks, at)
     if shown is None and all(t.scales.accel_lsb_per_g is None for t in ticks):
         raise TooLittleRest(f"{problem}; or record acceleration: gravity tells what moves")
     if shown is None:
         raise problem
     with written_together(out) as folder:
-        found = write_in_motion(shown, logs, at, folder, advance)
-        result = json.loads(json.dumps(found, default=as_json))
-        _write_json(folder, result)
-    return result
+        return _written(write_in_motion(shown, logs, at, folder, advance), folder)
 
 
-def _write_json(folder: Path, result: Mapping[str, Any]) -> None:
-    with written_beside(folder / "report.json") as temporary:
-        temporary.write_text(json.dumps(result, indent=1, allow_nan=False), encoding="utf-8")
+def _written(result: Mapping[str, Any], folder: Path) -> LoopReport:
+    """What report.json holds, which is written into the folder."""
+    text = json.dumps(result, default=as_json, indent=1, allow_nan=False)
+    (folder / "report.json").write_text(text, encoding="utf-8")
+    return json.loads(text)

@@ -1,7 +1,6 @@
 """`zerorate close` on recordings that hardly rest: what gravity shows of scale factor and axes."""
 
 from collections.abc import Callable, Mapping, Sequence
-from os import PathLike
 from pathlib import Path
 from typing import Any
 
@@ -11,14 +10,13 @@ from threadpoolctl import threadpool_limits
 from .loop.motion.by_windows import GIVEN, UNIT, RateScale, by_windows, nothing_in_words
 from .loop.motion.moving import moving_of
 from .loop.motion.scales_and_timing import InMotion, slots_of
-from .loop.read.ticks import Ticks
+from .loop.read.ticks import AnyPath, Ticks
 from .loop.report.motion_effects import heading_in_words, heading_of, turning
 from .loop.verify.firmware import Firmware
 from .loop.verify.run_kernels import CorrectedWriter
 from .model import Model, build_model, write_model
 from .model.model import binding_of
 from .recordings import open_recording
-from .recordings.atomic import written_beside
 from .replay.samples import frames_in_batches
 
 _AXES = "xyz"
@@ -40,7 +38,7 @@ def shown_in_motion(ticks: Sequence[Ticks], holdout: int | None) -> RateScale | 
 
 def write_in_motion(
     shown: RateScale,
-    logs: Sequence[str | PathLike[str]],
+    logs: Sequence[AnyPath],
     holdout: int | None,
     folder: Path,
     advance: Callable[[float], None],
@@ -53,16 +51,14 @@ def write_in_motion(
     model = build_model(slots, scales, binding=binding_of(scales))
     at = len(logs) - 1 if holdout is None else holdout
     held = {Path(log).name for i, log in enumerate(logs) if i == at or len(logs) == 1}
-    with written_beside(folder / "corrected.parquet") as temporary:
-        writer = CorrectedWriter(temporary)
-        for log in logs:
-            _correct(writer, Path(log), model, Path(log).name in held)
-            advance(1)
-        writer.close()
+    writer = CorrectedWriter(folder / "corrected.parquet")
+    for log in logs:
+        _correct(writer, Path(log), model, Path(log).name in held)
+        advance(1)
+    writer.close()
     write_model(model, folder)
     result = _result(shown, [Path(log).name for log in logs], sorted(held))
-    with written_beside(folder / "report.html") as temporary:
-        temporary.write_text(motion_page(result, folder), encoding="utf-8")
+    (folder / "report.html").write_text(motion_page(result, folder), encoding="utf-8")
     return result
 
 

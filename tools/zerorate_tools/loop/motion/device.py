@@ -112,12 +112,17 @@ def device_of(statements: Sequence[Shown], large: bool = False) -> Device:
     evidence = np.array([c.evidence for c in cases])
     nats = float(logsumexp(evidence) - np.log(len(cases)))
     weight = np.exp(evidence - logsumexp(evidence))
-    means = np.stack([c.entries for c in cases])
+    parts = zip(*((c.entries, c.covariance) for c in cases))
+    mean, spread = _mixed(weight, *map(np.stack, parts))
+    return Device(mean, spread, cases[int(weight.argmax())].shown, nats, weight, cases)
+
+
+def _mixed(weight: np.ndarray, means: np.ndarray, covariances: np.ndarray):
+    """Mean (9,) and covariance (9, 9) of a mixture of (k, 9) and (k, 9, 9)."""
     mean = weight @ means
     apart = means - mean
-    spread = np.einsum("c,cij->ij", weight, np.stack([c.covariance for c in cases]))
-    spread += np.einsum("c,ci,cj->ij", weight, apart, apart)
-    return Device(mean, spread, cases[int(weight.argmax())].shown, nats, weight, cases)
+    spread = np.einsum("k,kij->ij", weight, covariances)
+    return mean, spread + np.einsum("k,ki,kj->ij", weight, apart, apart)
 
 
 def _case(statements, sigma, large) -> _Case:
@@ -127,9 +132,7 @@ def _case(statements, sigma, large) -> _Case:
     nats, means, covariances = _posteriors(shown, sum(p[1] for p in parts) + _LIKELY[int(large)])
     evidence = float(logsumexp(nats))
     weight = np.exp(nats - evidence)
-    mean = weight @ means
-    spread = np.einsum("s,sij->ij", weight, covariances)
-    spread += np.einsum("s,si,sj->ij", weight, means - mean, means - mean)
+    mean, spread = _mixed(weight, means, covariances)
     return _Case(sigma, statements, shown, evidence, mean, spread)
 
 

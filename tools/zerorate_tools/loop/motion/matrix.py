@@ -53,15 +53,37 @@ class Fitted:
         return self._of(matrix, ~(held[:-2] | held[1:-1] | held[2:]))
 
     def normal(self, take) -> tuple[np.ndarray, np.ndarray]:
-        """(p, p) and (p,) normal equations of some windows."""
+        """(p, p) and (p,) normal equations of some windows, of its rests, and of what its own
+        errors were before."""
         columns = self.rows.columns[take]
         weighted = columns * (self.rows.counts[:, None] * self.precision[take])[..., None]
         flat = weighted.reshape(-1, columns.shape[-1])
-        return flat.T @ columns.reshape(flat.shape), flat.T @ self.rows.errors[take].ravel()
+        normal, right = (
+            flat.T @ columns.reshape(flat.shape),
+            flat.T @ self.rows.errors[take].ravel(),
+        )
+        at = np.arange(MATRIX, len(right))
+        normal[at, at] += _OWN_PRECISION
+        right[MATRIX:] -= _OWN_PRECISION * self.own
+        for at_s, *rate in self.moving.rests:
+            design = np.zeros((3, len(self.own)))
+            design[:, BIAS], design[:, DRIFT] = np.eye(3), at_s * np.eye(3)
+            normal[MATRIX:, MATRIX:] += design.T @ design / REST_SIGMA**2
+            right[MATRIX:] += design.T @ (np.array(rate) - design @ self.own) / REST_SIGMA**2
+        return normal, right
+
+    def own_beside(self, step: np.ndarray) -> np.ndarray:
+        """By how much its own errors change where the entries do by a step (9,)."""
+        normal, right = self.normal(slice(None))
+        right = right[MATRIX:] - normal[MATRIX:, :MATRIX] @ step
+        return np.linalg.solve(normal[MATRIX:, MATRIX:], right)
+
+    def move(self, step: np.ndarray) -> None:
+        """Move its own errors to where they are likeliest beside a matrix moved by (3, 3)."""
+        self.own[:TAKEN_OUT] += self.own_beside(step.ravel())[:TAKEN_OUT]
 
     def _of(self, matrix, take) -> Shown:
         normal, right = self.normal(take)
-        _add_own(normal, right, self)
         own, back = normal[MATRIX:, MATRIX:], normal[:MATRIX, MATRIX:]
         bare = normal[:MATRIX, :MATRIX] - back @ np.linalg.solve(own, back.T)
         right = right[:MATRIX] - back @ np.linalg.solve(own, right[MATRIX:])
@@ -72,12 +94,8 @@ class Fitted:
         (9,) in the place of the matrix, and what that is worth: a hand that pushes hides a tilt.
         What the recording has of its own is fitted anew."""
         step = entries - matrix.ravel()
-        normal, right = self.normal(slice(None))
-        _add_own(normal, right, self)
-        right = right[MATRIX:] - normal[MATRIX:, :MATRIX] @ step
-        own = np.linalg.solve(normal[MATRIX:, MATRIX:], right)
         rows = self.rows
-        left = rows.errors - rows.columns @ np.r_[step, own]
+        left = rows.errors - rows.columns @ np.r_[step, self.own_beside(step)]
         take = self.folds >= 0 if fold is None else self.folds == fold
         slow = rows.tilting * self.precision[..., None]
         square = np.einsum("wqac,wqad->wcd", slow, rows.tilting)[take]
@@ -102,7 +120,7 @@ def fit(recordings: list[Moving]) -> tuple[np.ndarray, list[Fitted]]:
             break
         step = device_of([f.shown(matrix) for f in every]).entries.reshape(3, 3) - matrix
         for f in every:
-            _move(f, step)
+            f.move(step)
         matrix = matrix + step
     return matrix, list(fitted.values())
 
@@ -113,7 +131,7 @@ def beside(moving: Moving, matrix: np.ndarray) -> Fitted | None:
     for seconds in _SECONDS:
         fitted = _beside(moving, seconds, matrix, fitted)
         if fitted is not None:
-            _move(fitted, np.zeros((3, 3)))
+            fitted.move(np.zeros((3, 3)))
     return fitted
 
 
@@ -177,7 +195,6 @@ def _weigh(f: Fitted, matrix: np.ndarray) -> None:
 def _left(f: Fitted, matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(w, q, 3) squares of what is left of rows, and the variance of what the fit took there."""
     normal, right = f.normal(slice(None))
-    _add_own(normal, right, f)
     normal[:MATRIX, :MATRIX] += np.eye(MATRIX) * SIZES[-1] ** -2
     right[:MATRIX] -= matrix.ravel() * SIZES[-1] ** -2
     inverse, columns = np.linalg.inv(normal), f.rows.columns
@@ -195,24 +212,3 @@ def _variances(rows: Rows, left: np.ndarray, free: np.ndarray) -> np.ndarray:
     noise[:, :-1] = uniform_filter1d(noise[:, :-1], 3, axis=1, mode="nearest")
     # a large tilt is vertical, too: what the columns have of it is linear
     return np.exp([noise[0], noise.max(axis=0)]).ravel()
-
-
-def _add_own(normal, right, f: Fitted) -> None:
-    """Add the priors of a recording's own errors, and its rests, to normal equations."""
-    at = np.arange(MATRIX, len(right))
-    normal[at, at] += _OWN_PRECISION
-    right[MATRIX:] -= _OWN_PRECISION * f.own
-    for at_s, *rate in f.moving.rests:
-        design = np.zeros((3, len(f.own)))
-        design[:, BIAS], design[:, DRIFT] = np.eye(3), at_s * np.eye(3)
-        normal[MATRIX:, MATRIX:] += design.T @ design / REST_SIGMA**2
-        right[MATRIX:] += design.T @ (np.array(rate) - design @ f.own) / REST_SIGMA**2
-
-
-def _move(f: Fitted, step: np.ndarray) -> None:
-    """Move a recording's own errors to where they are likeliest beside a moved matrix."""
-    normal, right = f.normal(slice(None))
-    _add_own(normal, right, f)
-    right = right[MATRIX:] - normal[MATRIX:, :MATRIX] @ step.ravel()
-    own = np.linalg.solve(normal[MATRIX:, MATRIX:], right)
-    f.own[:TAKEN_OUT] += own[:TAKEN_OUT]

@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from os import PathLike
 
 import numpy as np
 
@@ -14,7 +13,7 @@ from ..read.bad_readings import saturated
 from ..read.gate import CannotClose
 from ..read.reference import Reference
 from ..read.still import runs, still_ticks
-from ..read.ticks import TICK_S, Ticks, read_ticks
+from ..read.ticks import TICK_S, AnyPath, Ticks, read_ticks
 
 #: A device is in motion where its rates spread by this in a window.
 LEAST_DPS = 5.0
@@ -118,7 +117,7 @@ def check_axes(moving: Moving) -> None:
         )
 
 
-def moving_of(path: str | PathLike[str], ticks: Ticks | None = None) -> Moving | None:
+def moving_of(path: AnyPath, ticks: Ticks | None = None) -> Moving | None:
     """A recording read for its motion; None where it never turns, or has neither an accelerometer
     nor a reference.
 

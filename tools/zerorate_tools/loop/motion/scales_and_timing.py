@@ -2,19 +2,19 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from os import PathLike
 
 import numpy as np
 from scipy.stats import t as student
 
 from ...model import Slot
+from ...model.model import RATES
 from ...model.term import Term
 from ..read.sessions import Session
+from ..read.ticks import AnyPath
 from .by_windows import GIVEN, RateScale, by_windows
 from .columns import LONGEST_S
 from .moving import moving_of
 
-_RATES = ("rate_x", "rate_y", "rate_z")
 LEVEL = 1e-4
 _RUN_S = 30.0
 #: Below this there is nothing to fix: a tenth of a millisecond moves a hand's motion by 0.03 dps.
@@ -59,7 +59,7 @@ class InMotion:
 def in_motion(
     train: list[Session],
     holdout: list[Session],
-    logs: Mapping[str, str | PathLike[str]] | None = None,
+    logs: Mapping[str, AnyPath] | None = None,
     beside: Sequence[Session] = (),
 ) -> InMotion:
     """What the training sessions' motion shows. logs: the recordings, of whose samples windows in
@@ -89,7 +89,7 @@ def rates_of_turning(session: Session, motion: InMotion) -> np.ndarray:
     scales = motion.scales
     if scales is None or scales.reference != GIVEN or "rate_x" not in session.sources:
         return np.zeros((session.blocks, 3))
-    rate = np.column_stack([session.block_mean(session.sources[n]) for n in _RATES])
+    rate = np.column_stack([session.block_mean(session.sources[n]) for n in RATES])
     return rate @ scales.deployed.T
 
 
@@ -98,7 +98,7 @@ def slots_of(motion: InMotion) -> list[Slot]:
     t = motion.scales
     if t is None:
         return []
-    terms = [Term(n, -float(f), float(f)) for n, f in zip(_RATES, t.fastest_dps)]
+    terms = [Term(n, -float(f), float(f)) for n, f in zip(RATES, t.fastest_dps)]
     columns = [(float(x), float(y), float(z)) for x, y, z in t.deployed.T]
     return [Slot(term, column, t.kind) for term, column in zip(terms, columns)]
 

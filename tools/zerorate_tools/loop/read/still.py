@@ -1,14 +1,12 @@
 """Which ticks were still, judged without assuming a small bias."""
 
-from os import PathLike
-
 import numpy as np
 from scipy.ndimage import binary_dilation, median_filter, uniform_filter1d
 from scipy.stats import chi2
 
 from ...allan import overlapping
 from .gate import CannotClose
-from .ticks import TICK_S, Ticks, gap_filled, read_ticks, tick_seconds
+from .ticks import TICK_S, AnyPath, Ticks, gap_filled, read_ticks, tick_seconds
 
 _SPREAD = 2.0  # times the quiet spread
 _OFF_DPS = 1.0  # from the running middle of quiet ticks
@@ -158,7 +156,7 @@ def _gravity_holds(ticks: Ticks, there: np.ndarray) -> np.ndarray:
     return turned < max(8.0 * np.median(turned[lag:-lag]), 0.03)
 
 
-def deviation_of(path: str | PathLike[str]) -> tuple[np.ndarray, np.ndarray]:
+def deviation_of(path: AnyPath) -> tuple[np.ndarray, np.ndarray]:
     """Cluster times (k,) in s from one tick up, and Allan deviation (k, 3) in dps, at rest.
 
     Of the longest still stretch, overlapping (IEEE Std 952-1997, annex C). Raises BadRecording, and
@@ -167,7 +165,7 @@ def deviation_of(path: str | PathLike[str]) -> tuple[np.ndarray, np.ndarray]:
     return overlapping(*still_stretch(path))
 
 
-def still_stretch(path: str | PathLike[str]) -> tuple[np.ndarray, float]:
+def still_stretch(path: AnyPath) -> tuple[np.ndarray, float]:
     """(n, 3) dps, means of the longest still stretch, and of how many s each is: 0.1 where the
     recording has samples for it. Raises BadRecording, CannotClose.
 
@@ -189,7 +187,7 @@ def still_stretch(path: str | PathLike[str]) -> tuple[np.ndarray, float]:
     return gap_filled(rate), fine.tick_s
 
 
-def ticks_with_spread(path: str | PathLike[str]) -> Ticks:
+def ticks_with_spread(path: AnyPath) -> Ticks:
     """Ticks of at least fifty samples, by whose spread rest is told. Raises BadRecording."""
     own_s = tick_seconds(path, 0.0)
     return read_ticks(path, max(TICK_S, _SAMPLES * own_s) if own_s < 0.25 else TICK_S)

@@ -19,6 +19,8 @@ from .lines import Segments
 from .reference import Reference, change_of, declared, delay_products
 
 Batch = Mapping[str, np.ndarray]
+#: What names a file or a folder.
+AnyPath = str | PathLike[str]
 TICK_S = 1.0
 #: Samples a tick below which it is taken to hold one.
 _ALONE = 1.5
@@ -78,7 +80,7 @@ class _Sums:
         return np.pad(there, ((0, self.size - len(there)), (0, 0)))
 
 
-def tick_seconds(path: str | PathLike[str], least_s: float = TICK_S) -> float:
+def tick_seconds(path: AnyPath, least_s: float = TICK_S) -> float:
     """Length of a recording's ticks: longer where it is slower than one sample a tick, so that each
     holds one. Raises BadRecording."""
     return max(least_s, _of_one_sample(open_recording(path)))
@@ -93,7 +95,7 @@ def _of_one_sample(opened: OpenRecording) -> float:
     return round(1.0 / opened.scales.odr_hz, 3)
 
 
-def read_ticks(path: str | PathLike[str], tick_s: float = TICK_S) -> Ticks:
+def read_ticks(path: AnyPath, tick_s: float = TICK_S) -> Ticks:
     """Stream a recording of any length into ticks. Raises BadRecording.
 
     tick_s: what all recordings of a device have alike; never less than `tick_seconds` of this one.
