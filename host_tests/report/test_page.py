@@ -10,12 +10,7 @@ from zerorate_tools.cli import parser
 from zerorate_tools.layout import EFFECTS
 from zerorate_tools.numbers import figure
 from zerorate_tools.report.page import deployment
-from zerorate_tools.report.sentences import (
-    corrects_at_rest,
-    headline,
-    on_the_board,
-    why_both,
-)
+from zerorate_tools.report.sentences import corrects_at_rest, headline, why_both
 
 
 class Reader(HTMLParser):
@@ -88,11 +83,6 @@ def test_it_is_one_file_of_less_than_six_megabytes(closed):
 
 
 class TestAnswers:
-    @pytest.mark.parametrize(("after", "gain"), [(4.0, "too"), (9.0, "little"), (10.0, "nothing")])
-    def test_a_board_that_learns_gains_more_or_less(self, outcome, after, gain):
-        online = {"in_all": {"before_mdps": 10.0, "after_mdps": after}}
-        assert f"gains {gain}:" in on_the_board({**outcome("an effect").result, "online": online})
-
     def test_an_effect_that_did_not_help_comes_with_a_warning(self, outcome):
         closed = outcome("no temperature")
         whole = closed.result["in_all"]

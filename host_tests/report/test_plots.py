@@ -11,21 +11,13 @@ from zerorate_tools.layout import AXIS, ESTIMATOR, SETTINGS, axis_at
 from zerorate_tools.loop.motion.by_windows import GIVEN
 from zerorate_tools.loop.search.curve import FORMS, KIND
 from zerorate_tools.model.effects import EFFECTS
-from zerorate_tools.recordings import open_recording, read_recording
+from zerorate_tools.recordings import open_recording
 from zerorate_tools.replay import replay
 from zerorate_tools.report import sentences
 from zerorate_tools.report.estimators import moments
 from zerorate_tools.report.plot import thinned
 from zerorate_tools.report.report_folder import plots_of
-from zerorate_tools.report.residual_plots import (
-    HeldOut,
-    against_time,
-    held_out,
-    longest,
-    trend,
-)
-
-from host_tests.report.devices import Closed, device
+from zerorate_tools.report.residual_plots import HeldOut, against_time, held_out, longest
 
 
 @pytest.fixture(scope="module")
@@ -71,52 +63,6 @@ def test_the_error_drawn_has_the_root_mean_square_that_is_said(outcome, plots):
             assert rms == pytest.approx(said, abs=1e-4)
 
 
-def test_heating_and_cooling_are_told_apart(outcome):
-    session = outcome("an effect").analysis.holdout[0]
-    told = trend(session)
-    step = np.diff(session.block_mean(session.sources["temp"]))
-    fast = np.abs(step) > 0.2
-    assert fast.sum() > 20
-    agree = told[1:][fast] == np.sign(step[fast])
-    assert agree.mean() > 0.9
-
-
-def test_every_scored_point_is_in_the_plot_over_temperature_once(outcome, plots):
-    scored = np.isfinite(held_out(outcome("an effect").analysis)[0].after_mdps[:, 0]).sum()
-    drawn = [s for s in plots["residual-temperature"].series if s.panel == 0]
-    assert sum(len(s.x) for s in drawn if s.views == ("after",)) == scored
-    assert sum(len(s.x) for s in drawn if s.views == ("before",)) == scored
-
-
-def test_slots_of_one_source_are_told_apart_and_drawn_as_one_curve(tmp_path):
-    effects = [("temperature-cubic", 20.0), ("temperature-quadratic", 10.0)]
-    closed = Closed(tmp_path, device(tmp_path, 2, effects, names=["alone"]))
-    made, _ = plots_of(closed.analysis, closed.result, closed.logs, closed.folder)
-    curve = next(plot for plot in made if plot.key == "effect-1")
-    step = closed.result["effects"][0]
-    assert step["effect"] == "temperature-curve"
-    assert len(step["coefficients"]) == 8
-    assert (curve.views, curve.panels[0].x_label) == ((), "temperature, °C")
-
-
-def test_an_effects_points_lie_about_its_curve(outcome):
-    closed = outcome("hostile names")
-    made, _ = plots_of(closed.analysis, closed.result, closed.logs, closed.folder)
-    effect = next(plot for plot in made if plot.key == "effect-1")
-    for a in range(3):
-        series = [s for s in effect.series if s.panel == a]
-        curve = next(s for s in series if s.name == "correction")
-        off = [s.y - np.interp(s.x, curve.x, curve.y) for s in series if s is not curve]
-        assert np.std(np.concatenate(off)) < np.ptp(curve.y)
-
-
-def test_the_allan_deviation_is_of_the_longest_stretch_without_a_gap(outcome):
-    parts = held_out(outcome("one recording").analysis)
-    scored = np.isfinite(parts[0].after_mdps).all(axis=1)
-    runs = "".join("x" if there else " " for there in scored).split()
-    assert len(longest(parts)[2]) == max(map(len, runs))
-
-
 def test_the_floor_is_the_lowest_point_of_the_noise(outcome, plots):
     for a, floor in enumerate(outcome("an effect").result["floor_mdps"]):
         noise = [s for s in plots["allan"].series if s.panel == a and s.role == "floor"][0]
@@ -154,12 +100,6 @@ def seen(log):
     return moments([log], every_s=300.0)
 
 
-def test_one_moment_every_five_minutes(log, seen):
-    samples = len(read_recording(log))
-    assert len(seen) == -(-samples // 300)
-    assert np.diff([m.minute for m in seen])[:-1] == pytest.approx(5.0)
-
-
 def test_the_last_moment_is_the_state_that_a_replay_ends_in(log, seen):
     state = np.frombuffer(replay(log).state, "<i4")
     scales = open_recording(log).scales
@@ -176,16 +116,6 @@ def test_the_last_moment_is_the_state_that_a_replay_ends_in(log, seen):
         shown = [e.bias_dps for e in seen[-1].axes[axis]]
         assert shown[0] == pytest.approx(biases[0])
         assert set(np.round(shown, 9)) <= set(np.round(biases, 9))
-
-
-def test_a_histogram_holds_its_bias_and_its_edges_rise(seen):
-    for m in seen:
-        for held in m.axes:
-            for e in held:
-                assert np.all(np.diff(e.edges_dps) > 0)
-                assert e.edges_dps[0] <= e.bias_dps <= e.edges_dps[-1]
-                bins = Corrector().settings[SETTINGS.BINS]
-                assert len(e.readings) == len(e.edges_dps) - 1 == bins
 
 
 @pytest.mark.parametrize("count", [0, 1, 2])

@@ -4,19 +4,18 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..loop.read.sessions import Session, block_basis
 from ..loop.verify.analysis import Analysis
 from ..model.term import Term
-from .plot import Line, Panel, Plot, Series, thinned
-from .residual_plots import AXES, TRENDS, trained_residuals, trend
+from .plot import ZERO, Numbers, Plot, Series, panels_of_axes, thinned
+from .residual_plots import TRENDS, minutes, trained_residuals, trend
 from .sentences import quantity
 
 _MOST_DOTS = 600
 #: Terms drawn as one curve, each with its (3,) mdps; a session with its residual (n, 3) mdps.
-Group = list[tuple[Term, NDArray[Any]]]
-Judged = tuple[Session, NDArray[Any]]
+Group = list[tuple[Term, Numbers]]
+Judged = tuple[Session, Numbers]
 
 
 def effect_plots(analysis: Analysis, names: list[str]) -> list[Plot]:
@@ -43,11 +42,7 @@ def _sessions(analysis: Analysis) -> list[Judged]:
 
 
 def _plot(
-    number: int,
-    name: str,
-    terms: list[Term],
-    coefficients_mdps: NDArray[Any],
-    sessions: list[Judged],
+    number: int, name: str, terms: list[Term], coefficients_mdps: Numbers, sessions: list[Judged]
 ) -> Plot:
     groups = _groups(terms, coefficients_mdps, sessions[0][0])
     views = tuple(groups) if len(groups) > 1 else ()
@@ -57,8 +52,6 @@ def _plot(
         for s in _series(group, sessions, (label,) if views else ())
     ]
     label = "value of what it follows" if views else next(iter(groups))
-    zero = (Line("y", 0.0, "context", dash="dot"),)
-    panels = tuple(Panel(f"{axis} axis, mdps", label, "mdps", lines=zero) for axis in AXES)
     return Plot(
         key=f"effect-{number}",
         title=f"{name}: the curve and its data",
@@ -67,15 +60,13 @@ def _plot(
         "about the line.",
         description=f"For each axis the correction for {name} as a line over {label}, and the "
         "measured points about it; triangles pointing up are heating, down cooling.",
-        panels=panels,
+        panels=panels_of_axes(label, lines=(ZERO,)),
         series=tuple(series),
         views=views,
     )
 
 
-def _groups(
-    terms: list[Term], coefficients_mdps: NDArray[Any], session: Session
-) -> dict[str, Group]:
+def _groups(terms: list[Term], coefficients_mdps: Numbers, session: Session) -> dict[str, Group]:
     """Label of the abscissa -> the terms drawn over it, as one curve, each with its (3,) mdps."""
     out: dict[str, Group] = {}
     for term, coefficients in zip(terms, coefficients_mdps):
@@ -98,15 +89,15 @@ def _series(group: Group, sessions: list[Judged], views: tuple[str, ...]) -> lis
     return out
 
 
-def _correction(group: Group, axis: int, session: Session) -> NDArray[Any]:
+def _correction(group: Group, axis: int, session: Session) -> Numbers:
     """(n,) mdps by block."""
     each = [coefficients[axis] * block_basis(term, session) for term, coefficients in group]
     return np.sum(each, axis=0)
 
 
 def _points(
-    group: Group, axis: int, session: Session, left: NDArray[Any]
-) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
+    group: Group, axis: int, session: Session, left: Numbers
+) -> tuple[Numbers, Numbers, Numbers]:
     """Abscissa, measured mdps and trend of the blocks with a rate."""
     there = np.isfinite(left)
     x = abscissa(group[0][0], session)[0]
@@ -114,7 +105,7 @@ def _points(
     return x[there], y[there], trend(session)[there]
 
 
-def _curve(group: Group, axis: int, sessions: list[Session]) -> tuple[NDArray[Any], NDArray[Any]]:
+def _curve(group: Group, axis: int, sessions: list[Session]) -> tuple[Numbers, Numbers]:
     """Over the sorted abscissa; a loop, which hysteresis is, in the order of time."""
     term = group[0][0]
     is_loop = any(t.memory in ("backlash", "play") for t, _ in group)
@@ -127,11 +118,11 @@ def _curve(group: Group, axis: int, sessions: list[Session]) -> tuple[NDArray[An
     return thinned(x[order], y[order])
 
 
-def abscissa(term: Term, session: Session) -> tuple[NDArray[Any], str]:
+def abscissa(term: Term, session: Session) -> tuple[Numbers, str]:
     """(n,) what the effect is best drawn over, by block, and its label."""
     name, unit = quantity(term.source)
     if term.decay_s or term.source == "time":
-        return (np.arange(session.blocks) + 0.5) * session.block_s / 60, "minutes since power-on"
+        return minutes(session), "minutes since power-on"
     if term.second is not None:
         other = quantity(term.second)[0]
         return block_basis(term, session), f"{name} times {other}, from their means"

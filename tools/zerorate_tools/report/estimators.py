@@ -4,23 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from os import PathLike
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from zerorate import Corrector
 
 from zerorate_tools.layout import AXIS, ESTIMATOR, SETTINGS, STATE, axis_at
 
+from ..loop.read.ticks import AnyPath
 from ..numbers import fixed
 from ..recordings import Scales, open_recording
 from ..replay.engines import engine
 from ..replay.replaying import corrector_for, load_model
 from ..replay.samples import FRAME, frames_in_batches
-from .plot import Line, Panel, Plot, Series
-from .residual_plots import AXES
+from .plot import AXES, Line, Numbers, Panel, Plot, Series
 
 _POPULATION = 0x3FFF
 _TEMP = FRAME.index("temp")
@@ -38,8 +36,8 @@ class Estimator:
     kind: str
     temp_degc: float | None
     bias_dps: float
-    edges_dps: NDArray[Any]
-    readings: NDArray[Any]
+    edges_dps: Numbers
+    readings: Numbers
     in_use: bool
 
 
@@ -53,14 +51,12 @@ class Moment:
     minute: float
     recording: str
     temp_degc: float | None
-    bias_dps: NDArray[Any]
+    bias_dps: Numbers
     axes: tuple[tuple[Estimator, ...], ...]
 
 
 def moments(
-    logs: Sequence[str | PathLike[str]],
-    model: str | PathLike[str] | None = None,
-    every_s: float = 60.0,
+    logs: Sequence[AnyPath], model: AnyPath | None = None, every_s: float = 60.0
 ) -> list[Moment]:
     """Replay recordings one after another, each a power-on, looking at the state every `every_s`.
 
@@ -101,7 +97,7 @@ def _moment(
     )
 
 
-def _estimators(state: NDArray[Any], settings: Any, axis: int, scales: Scales) -> list[Estimator]:
+def _estimators(state: Numbers, settings: Any, axis: int, scales: Scales) -> list[Estimator]:
     """Those of an axis that hold anything."""
     block = axis_at(settings, axis)
     words, short = settings[SETTINGS.ESTIMATOR_WORDS], settings[SETTINGS.SHORT]
@@ -116,7 +112,7 @@ def _estimators(state: NDArray[Any], settings: Any, axis: int, scales: Scales) -
     return out
 
 
-def _estimator(kind: str, own: NDArray[Any], bins: int, in_use: bool, scales: Scales) -> Estimator:
+def _estimator(kind: str, own: Numbers, bins: int, in_use: bool, scales: Scales) -> Estimator:
     histogram, lsb = own[ESTIMATOR.EST_HISTOGRAM :], scales.gyro_lsb_per_dps
     warm = kind != "any" and scales.temp_lsb_per_degc
     return Estimator(

@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+Numbers = NDArray[Any]
+
 #: Most points of a line: more cannot be told apart on a screen, and make the page slow.
 MOST_POINTS = 1500
 
@@ -20,8 +22,8 @@ class Series:
     """
 
     panel: int
-    x: NDArray[Any]
-    y: NDArray[Any]
+    x: Numbers
+    y: Numbers
     name: str
     role: str
     mark: str = "line"
@@ -29,7 +31,7 @@ class Series:
     dash: str = "solid"
     size: float = 6.0
     views: tuple[str, ...] = ()
-    width: NDArray[Any] | None = None
+    width: Numbers | None = None
     words: Sequence[str] | None = None
 
 
@@ -64,6 +66,16 @@ class Panel:
     x_narrow: str = ""
 
 
+AXES = ("x", "y", "z")
+#: What is off by nothing.
+ZERO = Line("y", 0.0, "context", dash="dot")
+
+
+def panels_of_axes(x_label: str, **look: Any) -> tuple[Panel, ...]:
+    """A panel for the error of each axis, all looking alike."""
+    return tuple(Panel(f"{axis} axis, mdps", x_label, "mdps", **look) for axis in AXES)
+
+
 @dataclass(frozen=True)
 class Plot:
     """Panels side by side, or with `stacked` one under another along one x.
@@ -84,9 +96,7 @@ class Plot:
     frames: tuple[tuple[str, Mapping[int, Series]], ...] = field(default=())
 
 
-def thinned(
-    x: NDArray[Any], y: NDArray[Any], most: int = MOST_POINTS
-) -> tuple[NDArray[Any], NDArray[Any]]:
+def thinned(x: Numbers, y: Numbers, most: int = MOST_POINTS) -> tuple[Numbers, Numbers]:
     """Of each stretch of a long line its lowest and its highest point, in their order."""
     n = len(x)
     if n <= most:

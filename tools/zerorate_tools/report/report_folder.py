@@ -1,14 +1,14 @@
 """The report of a closed loop, written into a folder: one page."""
 
 from collections.abc import Mapping, Sequence
-from os import PathLike
 from pathlib import Path
 from typing import Any
 
 from ..errors import ZerorateError
+from ..loop.read.ticks import AnyPath
 from ..loop.verify.analysis import Analysis
 from ..model import read_model
-from ..recordings.atomic import final, written_beside
+from ..recordings.atomic import final
 from .effect_plots import effect_plots
 from .estimators import held_over_time, inside, moments
 from .page import deployment, page
@@ -28,10 +28,7 @@ _MOST_MOMENTS = 120
 
 
 def write_report(
-    analysis: Analysis,
-    result: Mapping[str, Any],
-    logs: Sequence[str | PathLike[str]],
-    folder: str | PathLike[str],
+    analysis: Analysis, result: Mapping[str, Any], logs: Sequence[AnyPath], folder: AnyPath
 ) -> Path:
     """Write report.html beside the model in `folder`; its path.
 
@@ -42,16 +39,12 @@ def write_report(
     plots, notes = plots_of(analysis, result, logs, folder)
     board = deployment(final(folder), read_model(folder / "model.bin").channels)
     path = folder / "report.html"
-    with written_beside(path) as temporary:
-        temporary.write_text(page(result, plots, board, notes), encoding="utf-8")
+    path.write_text(page(result, plots, board, notes), encoding="utf-8")
     return path
 
 
 def plots_of(
-    analysis: Analysis,
-    result: Mapping[str, Any],
-    logs: Sequence[str | PathLike[str]],
-    folder: str | PathLike[str],
+    analysis: Analysis, result: Mapping[str, Any], logs: Sequence[AnyPath], folder: AnyPath
 ) -> tuple[list[Plot], list[str]]:
     """Every plot that these recordings allow, and sentences on those that they do not."""
     parts, notes = held_out(analysis), []

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..allan import Noise, overlapping
 from ..loop.fit.noise import noise_of
@@ -15,10 +14,9 @@ from ..loop.fit.regression import predicted
 from ..loop.read.sessions import Session
 from ..loop.verify.analysis import Analysis
 from ..loop.verify.judge import scored
-from .plot import Line, Panel, Plot, Series, thinned
+from .plot import ZERO, Line, Numbers, Panel, Plot, Series, panels_of_axes, thinned
 
 _LEAST = 9
-AXES = ("x", "y", "z")
 #: Letters of an axis' label for which a phone has room.
 _LONGEST_LABEL = 48
 TRENDS = ((1, "heating", "triangle-up"), (-1, "cooling", "triangle-down"), (0, "held", "circle"))
@@ -46,10 +44,8 @@ def against_time(parts: list[HeldOut], events: list[dict[str, Any]]) -> Plot:
     brief = (
         label if len(label) <= _LONGEST_LABEL else "minutes since the start of what was held out"
     )
-    lines = (Line("y", 0.0, "context", dash="dot"), *_steps(parts, events))
-    panels = [
-        Panel(f"{axis} axis, mdps", label, "mdps", lines=lines, x_narrow=brief) for axis in AXES
-    ]
+    lines = (ZERO, *_steps(parts, events))
+    panels = [*panels_of_axes(label, lines=lines, x_narrow=brief)]
     if warm:
         panels.append(Panel("die temperature, °C", label, "°C", share=0.7, x_narrow=brief))
     return Plot(
@@ -79,7 +75,6 @@ def against_temperature(parts: list[HeldOut]) -> Plot | None:
                 look: dict[str, Any] = {"mark": "points", "symbol": symbol, "views": (view,)}
                 series.append(Series(a, x, y, name, name, **look))
     most = 1.08 * max(np.nanmax(np.abs(s.y), initial=1e-3) for s in series)
-    zero = (Line("y", 0.0, "context", dash="dot"),)
     return Plot(
         key="residual-temperature",
         title="Error against temperature",
@@ -87,18 +82,13 @@ def against_temperature(parts: list[HeldOut]) -> Plot | None:
         "temperature can correct: hysteresis, a lag, or a rate. Both views have the same scale.",
         description="Points of the held-out error over die temperature for each axis; triangles "
         "pointing up are heating, down cooling, circles a held temperature.",
-        panels=tuple(
-            Panel(f"{axis} axis, mdps", "°C", "mdps", lines=zero, y_range=(-most, most))
-            for axis in AXES
-        ),
+        panels=panels_of_axes("°C", lines=(ZERO,), y_range=(-most, most)),
         series=tuple(series),
         views=("after", "before"),
     )
 
 
-def _pooled(
-    parts: list[HeldOut], view: str, axis: int, code: int
-) -> tuple[NDArray[Any], NDArray[Any]]:
+def _pooled(parts: list[HeldOut], view: str, axis: int, code: int) -> tuple[Numbers, Numbers]:
     x, y = [], []
     for part in parts:
         assert part.temp_degc is not None, "others were left out"
@@ -109,7 +99,7 @@ def _pooled(
     return thinned(np.concatenate(x), np.concatenate(y))
 
 
-def _starts(parts: list[HeldOut]) -> NDArray[Any]:
+def _starts(parts: list[HeldOut]) -> Numbers:
     """Minute at which each part begins when they are laid end to end."""
     lengths = [p.minutes[-1] + p.block_s / 120 for p in parts]
     return np.cumsum([0.0, *lengths[:-1]])
@@ -149,9 +139,7 @@ def at_a_glance(result: Mapping[str, Any]) -> Plot:
     )
 
 
-def _figures(
-    result: Mapping[str, Any], name: str
-) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
+def _figures(result: Mapping[str, Any], name: str) -> tuple[Numbers, Numbers, Numbers]:
     """Value and limits, each (4,): all axes first."""
     whole = result["in_all"]
     limits = np.array([whole["ci95_mdps"][name], *result["ci95_mdps"][name]])
@@ -174,14 +162,8 @@ def deviations(parts: list[HeldOut], noise: list[Noise], floor_mdps: list[float]
         expected = 1e3 * noise[a].deviation(tau_s)
         series.append(Series(a, tau_s, expected, "its noise alone", "floor", dash="dot"))
     panels = [
-        Panel(
-            f"{axis} axis, mdps",
-            "averaging time, s",
-            "mdps",
-            log=True,
-            lines=(Line("y", floor, "floor", "floor"),),
-        )
-        for axis, floor in zip(AXES, floor_mdps)
+        replace(panel, lines=(Line("y", floor, "floor", "floor"),))
+        for panel, floor in zip(panels_of_axes("averaging time, s", log=True), floor_mdps)
     ]
     return Plot(
         key="allan",
@@ -197,7 +179,7 @@ def deviations(parts: list[HeldOut], noise: list[Noise], floor_mdps: list[float]
     )
 
 
-def longest(parts: list[HeldOut]) -> tuple[float, NDArray[Any], NDArray[Any]] | None:
+def longest(parts: list[HeldOut]) -> tuple[float, Numbers, Numbers] | None:
     """block_s, before and after, each (n, 3), of the longest stretch without a gap, if enough."""
     best = None
     for part in parts:
@@ -215,12 +197,12 @@ class HeldOut:
     """
 
     name: str
-    minutes: NDArray[Any]
+    minutes: Numbers
     block_s: float
-    temp_degc: NDArray[Any] | None
-    trend: NDArray[Any]
-    before_mdps: NDArray[Any]
-    after_mdps: NDArray[Any]
+    temp_degc: Numbers | None
+    trend: Numbers
+    before_mdps: Numbers
+    after_mdps: Numbers
     start_us: int
 
 
@@ -244,7 +226,7 @@ def held_out(analysis: Analysis) -> list[HeldOut]:
     ]
 
 
-def trained_residuals(analysis: Analysis) -> list[tuple[Session, NDArray[Any]]]:
+def trained_residuals(analysis: Analysis) -> list[tuple[Session, Numbers]]:
     """(session, (n, 3) mdps left by the whole model) of what was fitted on."""
     terms = [*analysis.selection.straight, *analysis.selection.terms]
     out = []
@@ -260,18 +242,18 @@ def fitted_noise(analysis: Analysis) -> list[Noise]:
     return noise_of(analysis.judgement.whole, whole)
 
 
-def minutes(session: Session) -> NDArray[Any]:
+def minutes(session: Session) -> Numbers:
     """(n,) middle of each block, minutes since the recording's start."""
     return (np.arange(session.blocks) + 0.5) * session.block_s / 60
 
 
-def temperature(session: Session) -> NDArray[Any] | None:
+def temperature(session: Session) -> Numbers | None:
     """(n,) degC by block, None without a thermometer."""
     ticks = session.sources.get("temp")
     return None if ticks is None else session.block_mean(ticks)
 
 
-def trend(session: Session) -> NDArray[Any]:
+def trend(session: Session) -> Numbers:
     """(n,) int: 1 where the temperature rises, -1 where it falls, 0 where it is held."""
     temp = temperature(session)
     if temp is None or len(temp) < 2 * _TREND_BLOCKS + 1:
