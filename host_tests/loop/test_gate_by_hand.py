@@ -138,13 +138,17 @@ def test_channels_that_show_nothing_of_their_own_are_left_out():
         assert list(s.sources) == ["fan", "near", "other", "acc_x"]
 
 
-@pytest.mark.parametrize("noise, kept", [(0.02, False), (3.0, True)])
-def test_a_channel_with_the_rates_own_noise_is_no_cause(noise, kept):
+@pytest.mark.parametrize(
+    "noise, changes, kept", [(0.02, 80, False), (3.0, 80, True), (0.02, 38, True)]
+)
+def test_a_channel_with_the_rates_own_noise_is_no_cause(noise, changes, kept):
+    """It changes at more than half of the ticks."""
     rng = np.random.default_rng(4)
     of = session(40, fan=np.zeros(80))
     of.ticks_dps = rng.normal(size=(80, 3))
     of.ticks_dps[10:20] = np.nan
     of.sources["fan"] = np.nan_to_num(-of.ticks_dps[:, 1]) + noise * rng.normal(size=80)
+    of.sources["fan"][changes:] = 0.0
     ramp = session(40, fan=np.arange(80.0))
     ramp.ticks_dps = of.ticks_dps
     usable_channels([of], GateReport())

@@ -85,9 +85,10 @@ def test_a_lost_tick_is_bridged_and_many_make_the_ticks_longer(written):
     assert each_s == 1.0 and len(rate) >= 599
 
 
-def test_too_short_a_rest_is_a_sentence(written):
+def test_a_rest_has_thirty_ticks_or_a_sentence_says_so(written):
+    assert len(still_stretch(written(1 / 15, 15.0 * np.arange(30)))[0]) == 30
     with pytest.raises(CannotClose, match="run: never still for 450 s; leave it at rest longer"):
-        still_stretch(written(1 / 15, 15.0 * np.arange(20)))
+        still_stretch(written(1 / 15, 15.0 * np.arange(29)))
 
 
 UP = np.array([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0]])

@@ -29,7 +29,7 @@ _BLIND = "no rest was long enough, so nothing that only rest shows was looked fo
 def shown_in_motion(ticks: Sequence[Ticks], holdout: int | None) -> RateScale | None:
     """What windows in motion show of the matrix; None without motion. holdout: index of the
     recording held out, by default the last. Raises CannotClose."""
-    every = [moving_of(t.path, t) for t in ticks if t.path is not None]
+    every = [moving_of(t.path, t) for t in ticks]
     at = (len(every) - 1 if holdout is None else holdout) if len(every) > 1 else None
     train = [m for i, m in enumerate(every) if m is not None and i != at]
     held = [] if at is None else [m for m in [every[at]] if m is not None]

@@ -66,8 +66,6 @@ def saturated(rate: np.ndarray) -> np.ndarray:
     Nothing is found where the noise is below the resolution.
     """
     out = np.zeros(len(rate), bool)
-    if len(rate) <= _SPAN:
-        return out
     steps = np.abs(np.diff(rate, axis=0))
     usual = float(np.median(np.quantile(median_filter(steps, (_SPAN, 1)), _QUIETEST, axis=0)))
     flat = binary_opening(steps < _SHARE * usual, np.ones((_STEPS, 1), bool))

@@ -6,7 +6,6 @@ import numpy as np
 from scipy.stats import norm
 
 from .earth import earth_of
-from .lines import Spectrum
 from .sessions import OWN_SOURCES, Session, block_means
 from .still import runs, still_ticks
 from .ticks import Ticks, gap_filled
@@ -158,10 +157,11 @@ def session_of(ticks: Ticks, block_s: float) -> Session:
     """Block means of the rate's still part, tick means of the rest, times counted from the first
     sample.
     """
-    per = max(1, round(block_s / ticks.tick_s))
+    per = round(block_s / ticks.tick_s)
     blocks = len(ticks.count) // per
     m = blocks * per
-    still = still_ticks(ticks)[:m]
+    every_still = still_ticks(ticks)
+    still = every_still[:m]
     earth = earth_of(ticks)
     rate_at_rest = rate = ticks.rate[:m] - earth.rate_dps[:m]
     used = still
@@ -176,14 +176,9 @@ def session_of(ticks: Ticks, block_s: float) -> Session:
         ticks.name, per * ticks.tick_s, per, mean, np.where(share < _LEAST_STILL, 0.0, share),
         sources_of(ticks, m), ticks.start_us, earth=earth, delay=ticks.delay,
         ticks_dps=np.where(still[:, None], rate_at_rest, np.nan),
-        welch=_welch(ticks), tick_weight=weight, temp_step_degc=_temp_step_degc(ticks),
+        welch=ticks.segments.at_rest(every_still, ticks.scales.odr_hz),
+        tick_weight=weight, temp_step_degc=_temp_step_degc(ticks),
     )  # fmt: skip
-
-
-def _welch(ticks: Ticks) -> Spectrum | None:
-    if ticks.segments is None:
-        return None
-    return ticks.segments.at_rest(still_ticks(ticks), ticks.scales.odr_hz)
 
 
 def _temperature(ticks: Ticks) -> np.ndarray:
@@ -210,6 +205,6 @@ def sources_of(ticks: Ticks, m: int) -> dict[str, np.ndarray]:
         out.update({f"acc_{a}": ticks.accel[:m, i] for i, a in enumerate("xyz")})
         out["vib"] = ticks.vib[:m]
     if ticks.reference is not None:
-        out.update({f"rate_{a}": gap_filled(ticks.reference[:m, i]) for i, a in enumerate("xyz")})
+        out.update({f"rate_{a}": of for a, of in zip("xyz", gap_filled(ticks.reference[:m]).T)})
     out.update({n: v[:m] for n, v in ticks.extra.items() if n not in OWN_SOURCES})
     return out

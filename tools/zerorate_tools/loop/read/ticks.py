@@ -4,7 +4,7 @@ and counted.
 
 import hashlib
 from collections.abc import Hashable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 
@@ -49,13 +49,13 @@ class Ticks:
     temp: np.ndarray | None
     reference: np.ndarray | None
     extra: dict[str, np.ndarray]
-    faults: dict[str, int] = field(default_factory=dict)
-    samples: int = 0
-    digest: str = ""
-    attitude: np.ndarray | None = None
-    delay: np.ndarray | None = None
-    segments: Segments | None = None
-    path: Path | None = None
+    faults: dict[str, int]
+    samples: int
+    digest: str
+    attitude: np.ndarray | None
+    delay: np.ndarray | None
+    segments: Segments
+    path: Path
 
 
 class _Sums:
@@ -105,7 +105,7 @@ def read_ticks(path: AnyPath, tick_s: float = TICK_S) -> Ticks:
     reader = _Reader(opened.scales, opened.column_names, tick_s)
     for batch in opened.batches(rows=1 << 18):
         reader.add(batch)
-    return replace(reader.result(opened.name), path=Path(path))
+    return reader.result(opened.name, Path(path))
 
 
 class _Reader:
@@ -184,7 +184,7 @@ class _Reader:
         total, count = self.sums.get(("channel", channel), 2).T
         return gap_filled(np.where(count > 0, total / np.maximum(count, 1), np.nan))
 
-    def result(self, name: str) -> Ticks:
+    def result(self, name: str, path: Path) -> Ticks:
         *gyro, count = self.sums.get("gyro", 7).T
         filled = np.where(count > 0, count, np.nan)[:, None]
         rate, rate_var = _moments(np.transpose(gyro) / filled)
@@ -204,7 +204,7 @@ class _Reader:
             name, self.scales, self.tick_s, self.start or 0, count, rate, rate_var,
             accel, accel_var, vib, temp,
             reference, extra, self.bad.faults, self.samples, self.digest.hexdigest(),
-            self._attitude(), delay, self.segments,
+            self._attitude(), delay, self.segments, path,
         )  # fmt: skip
 
     def _true_rates(self, count: np.ndarray) -> np.ndarray:
