@@ -199,16 +199,11 @@ def test_a_matrix_is_named_by_its_parts_that_are_sure_and_no_tenth_of_the_whole(
 # --- recordings as their motion is read ---
 
 
-def written(tmp_path, change=lambda columns: columns, scales=None, **how):
+def written(tmp_path, change=lambda columns: columns, **how):
     recording = handled(7, np.zeros((3, 3)), **{"minutes": 0.5, **how})
-    columns = change(dict(recording.columns))
-    more = {"columns": columns, "scales": replace(recording.scales, **(scales or {}))}
-    write_recording(replace(recording, **more), tmp_path / "run.parquet")
+    changed = replace(recording, columns=change(dict(recording.columns)))
+    write_recording(changed, tmp_path / "run.parquet")
     return tmp_path / "run.parquet"
-
-
-def with_true_rates(columns):
-    return columns | {f"ref_g{a}": columns[f"g{a}"] for a in "xyz"}
 
 
 def without_acceleration(columns):
@@ -227,8 +222,10 @@ def test_a_recording_says_nothing_of_motion_without_turns_or_what_sees_them(tmp_
 
 
 def test_true_rates_beside_a_recording_are_an_attitude_where_most_are_known(tmp_path):
-    path = written(tmp_path, lambda columns: with_true_rates(without_acceleration(columns)))
-    moving = moving_of(path)
+    def with_true_rates(columns):
+        return without_acceleration(columns) | {f"ref_g{a}": columns[f"g{a}"] for a in "xyz"}
+
+    moving = moving_of(written(tmp_path, with_true_rates))
     assert not moving.accel.any() and np.isfinite(moving.given).all()
     turned = _attitude_by(np.degrees(moving.rate + moving.offset), moving.dt_s)
     assert moving.given == pytest.approx(turned, abs=1e-3)

@@ -17,7 +17,7 @@ import numpy as np
 
 from ..numbers import chance, figure
 from . import sentences
-from .plot import Line, Panel, Plot, Series
+from .plot import Panel, Plot, Series
 
 # Heights in CSS pixels: of a panel in a stack, alone, beside others and under others, and of what
 # is about them (page.js).
@@ -145,20 +145,15 @@ def legend(plot: Plot) -> list[dict[str, str]]:
 
 def smallest(result: Mapping[str, Any]) -> list[tuple[str, float]]:
     """(effect in words, mdps), the best shown first."""
-    sizes = result["smallest_detectable_mdps"].items()
-    return [
-        (sentences.title(kind), value) for kind, value in sorted(sizes, key=lambda item: item[1])
-    ]
+    sizes = sorted(result["smallest_detectable_mdps"].items(), key=lambda item: item[1])
+    return [(sentences.title(kind), value) for kind, value in sizes]
 
 
 def faults(result: Mapping[str, Any]) -> list[tuple[str, str]]:
     """(recording, its bad samples in words), of recordings that have any."""
-    rows = []
-    for name, counts in result["gate"]["faults"].items():
-        said = ", ".join(f"{count} {fault}" for fault, count in counts.items() if count)
-        if said:
-            rows.append((name, said))
-    return rows
+    every = result["gate"]["faults"].items()
+    said = {n: ", ".join(f"{c} {fault}" for fault, c in of.items() if c) for n, of in every}
+    return [(name, words) for name, words in said.items() if words]
 
 
 def plain(plot: Plot) -> dict[str, Any]:
@@ -181,17 +176,15 @@ def markup(text: str) -> str:
 
 
 def _panel(panel: Panel) -> dict[str, Any]:
+    own = asdict(panel)
+    lines = [{**line, "text": line["text"] and markup(line["text"])} for line in own["lines"]]
     return {
-        **asdict(panel),
+        **own,
+        "lines": lines,
         "title": markup(panel.title),
         "x_label": markup(panel.x_label),
         "x_narrow": markup(panel.x_narrow or panel.x_label),
-        "lines": [_line(line) for line in panel.lines],
     }
-
-
-def _line(line: Line) -> dict[str, Any]:
-    return {**asdict(line), "text": markup(line.text) if line.text else ""}
 
 
 def _series(series: Series) -> dict[str, Any]:

@@ -106,13 +106,12 @@ def _starts(parts: list[HeldOut]) -> Numbers:
 
 
 def _steps(parts: list[HeldOut], events: list[dict[str, Any]]) -> list[Line]:
-    lines = []
-    for part, start in zip(parts, _starts(parts)):
-        for event in events:
-            if event["recording"] == part.name:
-                at = start + (event["t_us"] - part.start_us) / 60e6
-                lines.append(Line("x", at, "event", "step"))
-    return lines
+    return [
+        Line("x", start + (event["t_us"] - part.start_us) / 60e6, "event", "step")
+        for part, start in zip(parts, _starts(parts))
+        for event in events
+        if event["recording"] == part.name
+    ]
 
 
 def at_a_glance(result: Mapping[str, Any]) -> Plot:

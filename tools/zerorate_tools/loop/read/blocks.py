@@ -62,17 +62,14 @@ def _course(raw: np.ndarray, noise: float) -> np.ndarray:
     whole = np.abs(raw - np.round(raw)) <= _WHOLE
     low = np.floor(raw)
     told = np.clip(low + 0.5 + noise * norm.ppf(raw - low), low, low + 1.0)
-    at, value = [], []
+    told[whole] = np.round(raw[whole])
     stays = _stays(raw, whole)
     usual = float(np.median([last - first for first, last in stays] or [1])) / 2
+    nodes = [(float(at), told[at]) for at in np.flatnonzero(~whole)]
     for first, last in stays:
-        nodes = _stay(raw, told, whole, first, last, usual)
-        at += [x for x, _ in nodes]
-        value += [v for _, v in nodes]
-    at = np.r_[np.flatnonzero(~whole), at]
-    value = np.r_[told[~whole], value]
-    order = np.argsort(at, kind="stable")
-    return np.interp(np.arange(len(raw)), at[order], value[order])
+        nodes += _stay(told, whole, first, last, usual)
+    at, value = np.transpose(sorted(nodes))
+    return np.interp(np.arange(len(raw)), at, value)
 
 
 def _stays(raw: np.ndarray, whole: np.ndarray) -> list[tuple[int, int]]:
@@ -84,32 +81,23 @@ def _stays(raw: np.ndarray, whole: np.ndarray) -> list[tuple[int, int]]:
 
 
 def _stay(
-    raw: np.ndarray, told: np.ndarray, whole: np.ndarray, first: int, last: int, usual: float
+    told: np.ndarray, whole: np.ndarray, first: int, last: int, usual: float
 ) -> list[tuple[float, float]]:
-    """Nodes (place, value) of a stay on one step: where it is entered and left, and, where that is
-    on one side or at an end of the recording, its middle. usual: ticks from an edge to the middle.
+    """Nodes (place, value) of a stay on one step: where it is entered, and, where it is entered and
+    left on one side or at an end of the recording, its middle. usual: ticks from an edge to the
+    middle; told: (m,) the step of whole ticks, the value of others.
     """
-    here, nodes = round(raw[first]), []
-    enter = _side(raw, told, whole, first - 1, here)
-    leave = _side(raw, told, whole, last, here)
-    if enter is not None and whole[first - 1]:
-        nodes.append((first - 0.5, enter))
-    if leave is not None and enter is not None and (enter - here) * (leave - here) < 0:
-        return nodes
-    length = last - first
-    if enter is not None and leave is not None:
-        return [*nodes, (first + length / 2 - 0.5, float(here))]
-    middle = min(usual, length - 1.0)
-    return [*nodes, (first + middle if enter is not None else last - 1 - middle, float(here))]
-
-
-def _side(
-    raw: np.ndarray, told: np.ndarray, whole: np.ndarray, beside: int, here: int
-) -> float | None:
-    """The value where a stay meets the tick beside it, or None at an end of the recording."""
-    if not 0 <= beside < len(raw):
-        return None
-    return (round(raw[beside]) + here) / 2 if whole[beside] else told[beside]
+    here = told[first]
+    enter, leave = (
+        (told[at] + here) / 2 if whole[at] else told[at]
+        for at in (max(first - 1, 0), min(last, len(told) - 1))
+    )
+    entered = [(first - 0.5, enter)] if first > 0 and whole[first - 1] else []
+    if first == 0 or last == len(told):
+        middle = min(usual, last - first - 1.0)
+        return [*entered, (last - 1 - middle if first == 0 else first + middle, here)]
+    turns = (enter - here) * (leave - here) >= 0
+    return [*entered, *([((first + last - 1) / 2, here)] if turns else [])]
 
 
 BLOCK_S = 20.0
