@@ -154,6 +154,11 @@ def at_rest(n):
     return columns | {name: np.full(n, 0.577) for name in FORCE} | {"temp_c": np.arange(n) + 1.0}
 
 
+def test_a_log_in_very_many_pieces_is_read_as_in_one():
+    (one, scales, _), (many, same, _) = (imported(at_rest(900), c) for c in ((), range(1, 900)))
+    assert scales == same and all((one[name] == many[name]).all() for name in one)
+
+
 def test_more_than_one_rate_in_a_thousand_beyond_every_sensor_refuses_the_unit():
     for fast, refused in ((2, False), (3, True)):
         columns = at_rest(2000)

@@ -92,6 +92,13 @@ def test_a_column_that_is_there_twice_is_refused_by_its_name(tmp_path):
         columnar.read(tmp_path / "in.parquet")
 
 
+def test_a_file_without_a_row_says_so(tmp_path):
+    names = ("t_s", "gx_dps", "gy_dps", "gz_dps")
+    pq.write_table(pa.table({n: pa.array([], pa.float64()) for n in names}), tmp_path / "x.parquet")
+    with pytest.raises(BadRecording, match="no data row|no column"):
+        read_foreign(tmp_path / "x.parquet")
+
+
 @pytest.mark.parametrize("line", [b"(1, 2", b"{[]: 1, 'a': 2}", b"(" * 3000, b"[" * 10**6, b"'"])
 def test_a_line_that_is_neither_json_nor_python_is_counted(line):
     dropped = Counter()

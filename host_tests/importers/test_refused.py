@@ -15,6 +15,7 @@ from .test_tables import HEAD, lines, rates, read, table
 COUNTS = table()[["t_s", *"gx_dps gy_dps gz_dps ax_g ay_g az_g".split()]]
 COUNTS = (16384 * COUNTS).round().set_axis("t_us gx gy gz ax ay az".split(), axis=1)
 RAW = dict.fromkeys(("gyro", "accel", "temp"), "lsb")
+SCALED = Options(hz=100, gyro_lsb_per_dps=131)
 NOISE = np.random.default_rng(4).normal(size=(50, 6)) * [0.01, 0.02, 0.01, 0.1, 0.1, 0.1]
 UNNAMED_DATES = "\n".join(f"2026-05-01   10:00:{i // 5:02d} 0.8  0.8   0.9" for i in range(50))
 WITH_A_RATE = "// Sample rate: 50.0Hz\nGyr_X;Gyr_Y;Gyr_Z\n" + "0.1;0.2;0.3\n" * 20
@@ -43,6 +44,13 @@ LISTS = pd.DataFrame({"t_s": np.arange(300) / 100, "pulse": 70, "gyro": "[0.8, -
         (COUNTS.assign(temp=-3400), {"units": RAW},
          "--gyro-lsb-per-dps 131 --accel-lsb-per-g 16384 --temp-lsb-per-degc 340 --temp-offset"),
         ('{"t": "now"}\n{"t": "then"}', {}, "JSON, and no numbers in it; write an object for each"),
+        (b"\x00\x01\xff\xfe" * 99, {}, "neither text nor a log of a known kind"),
+        (b"ULog\x01\x12\x35" + bytes(9999), {}, "nothing but zeros behind its start"),
+        ("hello\nworld", {}, "no table; name a CSV with a row for each sample"),
+        ("gx,gy,gz\n7,1,0\n-9,1,99999", {"units": {"gyro": "lsb"}, "options": SCALED},
+         "counts from -9 to 99999 are no words of 16 bits; divide them"),
+        (rates("t_s deg/h_x deg/h_y deg/h_z".split(), 99),
+         {"mapping": "gx=deg/h_x gy=deg/h_y gz=deg/h_z"}, "divide them by 3600"),
         (b"PK\x03\x04" + bytes(500), {}, "the zip is cut off or damaged; copy it again"),
         ("version https://git-lfs.github.com/spec/v1\noid sha256:1bf6", {},
          "a pointer of Git LFS, not the file; .*git lfs pull"),

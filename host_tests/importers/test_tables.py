@@ -267,6 +267,15 @@ def test_usual_names_and_units_of_rates_are_known(tmp_path, name):
     assert recording.gyro_dps().mean() == pytest.approx(0.8, abs=0.02)
 
 
+@pytest.mark.parametrize(("unit", "dps"), [("dps", 1.0), ("rad/s", 57.29578)])
+def test_the_steps_of_a_chip_tell_the_unit_of_rates(tmp_path, unit, dps):
+    counts = np.rint(131 * rates(["t_s", "gyro_x", "gyro_y", "gyro_z"], 300))
+    frame = (counts / 131 / dps).assign(t_s=table(300)["t_s"])
+    recording, report = read(tmp_path, frame)
+    assert told(report, f"gyro taken in {unit}: its steps are those of a chip")
+    assert (recording.gyro_lsb() == counts.iloc[:, 1:]).all(axis=None)
+
+
 @pytest.mark.parametrize("name", ["FreeAcc_{}_g", "lacc_{}_g", "LinAcc{} (g)"])
 def test_acceleration_less_gravity_is_none(tmp_path, name):
     frame = table().rename(columns={f"a{a}_g": name.format(a.upper()) for a in "xyz"})

@@ -107,6 +107,8 @@ def test_rates_that_are_floats_are_refused_by_the_first_that_is_no_number(
         (_SCALES % ("9" * 400), r"odr_hz is 9{40}\.\.\.; write a number from"),
         (_SCALES % ("9" * 5000), "a number of thousands of digits"),
         ("[" * 100_000, "nested too deep"),
+        (_SCALES.replace("X", "\\ud800") % 1, "the scales are not text"),
+        ({"sensor": 3, "odr_hz": 1, "gyro_lsb_per_dps": 1}, "the scales lack sensor"),
     ],
 )
 def test_bad_scales_are_refused_in_one_line(csv_of, scales, complaint):

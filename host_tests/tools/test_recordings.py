@@ -156,9 +156,15 @@ def test_a_failed_write_leaves_the_older_file_alone(tmp_path, file_name):
     assert not list(tmp_path.glob(".*"))
 
 
-def test_a_name_without_a_format_is_refused(tmp_path):
-    with pytest.raises(BadRecording, match="no format goes by this name; end the name in .parquet"):
-        write_recording(a_recording(), tmp_path / "run.xlsx")
+@pytest.mark.parametrize(("name", "said"), [
+    ("run.xlsx", "no format goes by this name; end the name in .parquet"),
+    ("none/run.csv", "there is no folder .*none; make it first"),
+    ("folder.csv", "is a folder; name a file in it"),
+])  # fmt: skip
+def test_where_no_recording_can_be_written_is_said(tmp_path, name, said):
+    (tmp_path / "folder.csv").mkdir()
+    with pytest.raises(BadRecording, match=said):
+        write_recording(a_recording(), tmp_path / name)
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="no other system has such a limit")
