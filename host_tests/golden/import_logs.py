@@ -64,10 +64,11 @@ def _planned(table, mapping, instance, without_time):
     how = {"units": {"time": "s"} if without_time else {}, "without_time": without_time}
     made = plan.planned(table, mapping, path, instance=instance, **how)
     columns = [f"{t}={one.column}:{one.unit or ''}" for t, one in made.wanted.items()]
+    plus = [t for t, one in made.wanted.items() if one.plus]
     factors = [f"{factor:.4g} {offset:g}" for factor, offset in made.factors.values()]
     said = [*table.notes, *made.notes, *plan.left_aside(made, table)]
     said += conversion.absent(made, table.names, path)
-    return " ".join([*columns, *factors, *sorted(made.raw), *made.plus, *told(" ".join(said))])
+    return " ".join([*columns, *factors, *sorted(made.raw), *plus, *told(" ".join(said))])
 
 
 def plans():

@@ -9,7 +9,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from ..errors import BadRecording
-from .recording import ACCEL, GYRO, TEMP, TIME, Columns
+from .recording import ACCEL, COLUMNS, GYRO, TIME, Columns
 
 GAP = -(2**31)
 """Stands for a missing value of an extra channel when gaps are kept, and when they are written."""
@@ -126,7 +126,7 @@ class BatchChecker:
 
 
 def _is_extra(name: str) -> bool:
-    return name not in (TIME, *GYRO, *ACCEL, TEMP)
+    return name not in COLUMNS
 
 
 def _whole(values: pa.Array) -> pa.Array:

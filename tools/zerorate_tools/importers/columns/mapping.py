@@ -1,10 +1,13 @@
 """`--map gx=gyro_x:rad/s` in words and in Python."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
 from ...recordings.recording import COLUMNS, TEMP, TIME
-from .units import units_of
+from .units import TIME_S, units_of
 
 LEFT_OUT = "none"
 
@@ -27,6 +30,16 @@ class Mapped:
     def is_left_out(self) -> bool:
         """Whether it is said that the recording shall not have this column."""
         return self.column == LEFT_OUT and self.unit is None and self.target in COLUMNS
+
+    def taken(
+        self, columns: Mapping[str, np.ndarray], factor: float, offset: float = 0.0
+    ) -> np.ndarray:
+        """Its readings out of a table's columns: times a factor, and an offset more."""
+        readings = columns[self.column] * (-factor if self.negative else factor) + offset
+        if self.plus:
+            column, unit = self.plus
+            readings += columns[column] * TIME_S[unit]
+        return readings
 
     @property
     def columns(self) -> tuple[str, ...]:

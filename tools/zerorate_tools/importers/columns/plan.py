@@ -42,7 +42,6 @@ class Plan:
 
     wanted: dict[str, Mapped]
     factors: dict[str, tuple[float, float]]
-    plus: dict[str, float] = field(default_factory=dict)
     raw: frozenset[str] = frozenset()
     notes: list[str] = field(default_factory=list)
     by_format: bool = False
@@ -55,14 +54,7 @@ class Plan:
 
     def physical(self, chunk: Chunk) -> dict[str, np.ndarray]:
         """Columns in dps, g, degC, seconds, or raw counts; extra channels by their factor."""
-        out = {}
-        for target, mapped in self.wanted.items():
-            factor, offset = self.factors[target]
-            sign = -1.0 if mapped.negative else 1.0
-            out[target] = chunk.columns[mapped.column] * (sign * factor) + offset
-            if mapped.plus:
-                out[target] += chunk.columns[mapped.plus[0]] * self.plus[target]
-        return out
+        return {t: m.taken(chunk.columns, *self.factors[t]) for t, m in self.wanted.items()}
 
 
 def planned(
@@ -92,16 +84,11 @@ def planned(
     plan = Plan(wanted, {}, notes=notes, by_format=bool(table.mapping))
     named = [t for t, mapped in given.items() if mapped.unit and t in COLUMNS]
     plan.typed = frozenset([*(units or {}), *map(kind_of, named)])
-    plan.plus = {t: factors_of(t)[m.plus[1]][0] for t, m in wanted.items() if m.plus}
     raw, unknown = set(), {}
     first = table.first_rows(plan.columns)
     ask = (plan, table, units or {}, first, path)
     time_unit = _unit(TIME, *ask, None) if TIME in wanted else None
-    t_s = None
-    if time_unit is not None:
-        t_s = first[wanted[TIME].column] * TIME_S[time_unit]
-        if wanted[TIME].plus:
-            t_s = t_s + first[wanted[TIME].plus[0]] * plan.plus[TIME]
+    t_s = wanted[TIME].taken(first, TIME_S[time_unit]) if time_unit else None
     scaled = _of_attitude(wanted, first)
     for target, mapped in wanted.items():
         factor = factor_in(mapped.unit) if mapped.unit else scaled.get(target)
@@ -121,14 +108,20 @@ def planned(
         # with its time a turning device tells the units itself
         unknown = {**({} if "ax" in wanted else unknown), "": hz_words(table)}
     if unknown:
-        named = [repr(column) for column in unknown if column]
-        what = "unit of column" if len(named) == 1 else "units of columns"
-        problem = f"the {what} {', '.join(named)} {'is' if len(named) == 1 else 'are'} not known"
-        if "" in unknown:
-            problem = f"{problem}, and there are no time stamps" if named else "no time stamps"
-        raise BadRecording(path, problem, do="give " + ", ".join(dict.fromkeys(unknown.values())))
+        do = "give " + ", ".join(dict.fromkeys(unknown.values()))
+        raise BadRecording(path, _of_unknown([*unknown]), do=do)
     plan.raw = frozenset(raw)
     return plan
+
+
+def _of_unknown(columns: list[str]) -> str:
+    """What is wrong with columns whose units nobody named; "" stands for a time that lacks."""
+    named = [repr(column) for column in columns if column]
+    if not named:
+        return "no time stamps"
+    what, are = ("unit of column", "is") if len(named) == 1 else ("units of columns", "are")
+    problem = f"the {what} {', '.join(named)} {are} not known"
+    return problem + (", and there are no time stamps" if "" in columns else "")
 
 
 def _of_attitude(wanted: Mapping[str, Mapped], first: Mapping[str, np.ndarray]) -> dict[str, float]:

@@ -43,7 +43,8 @@ def ulog(path: Path, instance: int = 0) -> Table:
     gyro = _topic(log, "sensor_gyro", instance)
     combined = _topic(log, "sensor_combined", instance)
     notes = []
-    if gyro is not None and (combined is None or not _far_faster(combined, gyro)):
+    most = _FAR_FASTER * len(gyro["timestamp"]) if gyro else 0
+    if gyro is not None and (combined is None or len(combined["timestamp"]) <= most):
         streams = _single_sensors(gyro, _topic(log, "sensor_accel", instance))
     elif combined is not None:
         streams = _combined(combined)
@@ -60,10 +61,6 @@ def ulog(path: Path, instance: int = 0) -> Table:
     chunks = partial(one_after_the_other, streams)
     sensor = str(log.msg_info_dict.get("ver_hw", "PX4"))
     return Table(names, chunks, si_mapping(names), sensor=sensor, notes=notes)
-
-
-def _far_faster(one: dict, other: dict) -> bool:
-    return len(one["timestamp"]) > _FAR_FASTER * len(other["timestamp"])
 
 
 def _topic(log: Any, name: str, instance: int) -> dict[str, np.ndarray] | None:

@@ -132,20 +132,15 @@ def _row_of_change(table: Table, plan: Plan, axes: tuple[str, ...], factor: floa
     There, from one row to the next, every axis' level and the noise grow by it, and the force does
     not change: motion that begins or ends does none of that.
     """
-    dropped, row = table.dropped.copy(), 0
-    for chunk in table.chunks(plan.columns):
-        columns = plan.physical(chunk)
-        size = np.linalg.norm([columns[name] for name in axes], axis=0)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            grown = np.diff(np.log(size)) / np.log(factor)
-        jumps = np.flatnonzero(grown > 0.5) + 1
-        if len(jumps):
-            at = int(jumps[0])
-            row = int(chunk.place[at]) + 1 if _is_scaled(columns, axes, at, factor) else 0
-            break
-    table.dropped.clear()
-    table.dropped.update(dropped)  # which counted them before
-    return row
+    with table.looked_at() as chunks, np.errstate(divide="ignore", invalid="ignore"):
+        for chunk in chunks(plan.columns):
+            columns = plan.physical(chunk)
+            size = np.linalg.norm([columns[name] for name in axes], axis=0)
+            jumps = np.flatnonzero(np.diff(np.log(size)) / np.log(factor) > 0.5) + 1
+            if len(jumps):
+                at = int(jumps[0])
+                return int(chunk.place[at]) + 1 if _is_scaled(columns, axes, at, factor) else 0
+    return 0
 
 
 def _is_scaled(columns: dict[str, np.ndarray], axes: tuple[str, ...], at: int, by: float) -> bool:

@@ -2,6 +2,7 @@
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from itertools import islice
 
@@ -44,12 +45,20 @@ class Table:
     read_bytes: float = 0.0
     parts: int = 1
 
+    @contextmanager
+    def looked_at(self) -> Iterator[Callable[[list[str]], Iterator[Chunk]]]:
+        """Yield `chunks`; what is left out of them within the block is not counted."""
+        dropped = self.dropped.copy()
+        try:
+            yield self.chunks
+        finally:
+            self.dropped.clear()
+            self.dropped.update(dropped)
+
     def first_rows(self, names: list[str]) -> dict[str, np.ndarray]:
         """The columns asked for, of the first chunk; empty ones where there is no row."""
-        dropped = self.dropped.copy()
-        found = [chunk.columns for chunk in islice(self.chunks(names), self.parts)]
-        self.dropped.clear()
-        self.dropped.update(dropped)
+        with self.looked_at() as chunks:
+            found = [chunk.columns for chunk in islice(chunks(names), self.parts)]
         return {n: np.concatenate([np.empty(0), *(one[n] for one in found)]) for n in names}
 
 
