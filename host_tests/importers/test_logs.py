@@ -8,6 +8,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
+from pyarrow.feather import write_feather
 from zerorate_bench.foreign_logs import binary as foreign_files
 from zerorate_tools.errors import BadRecording
 from zerorate_tools.importers import read_foreign
@@ -83,6 +84,33 @@ def test_an_imu_within_the_message_of_a_driver_is_read(tmp_path):
     recording, _ = read_foreign(foreign_files.bag_of_a_driver(tmp_path / "own.bag"))
     assert len(recording) == 600
     assert recording.gyro_dps()[0, 0] == pytest.approx(np.degrees(0.01), abs=0.005)
+
+
+@pytest.mark.parametrize("write", [pq.write_table, write_feather])
+def test_words_dates_and_gaps_of_a_file_by_columns(tmp_path, write):
+    at = np.arange(70_000)
+    words = np.resize(["still", "fast", "", None], len(at))
+    columns = {
+        "mode": pa.array(words, pa.string()),
+        "kind": pa.array(np.resize(["a", "b", "a"], len(at))).dictionary_encode(),
+        "same": pa.array(["x"] * len(at)),
+        "many": pa.array([str(n) for n in at]),
+        "on": pa.array(at % 2 == 1),
+        "at": pa.array(at * 1000, pa.timestamp("ms")),
+        "gaps": pa.array([None if n % 3 == 1 else n for n in at.tolist()], pa.float32()),
+    }
+    write(pa.table(columns), tmp_path / "in")
+    table = columnar.read(tmp_path / "in")
+    chunks = [*table.chunks(table.names)]
+    assert table.words == {"mode": ["still", "fast"], "kind": ["a", "b"]}
+    assert table.calendar == {"at"} and max(len(chunk.place) for chunk in chunks) <= 65536
+    assert np.array_equal(np.concatenate([chunk.place for chunk in chunks]), at)
+    expected = {"mode": np.resize([0, 1, np.nan, np.nan], len(at)), "at": at, "on": at % 2}
+    expected |= {"kind": np.resize([0, 1, 0], len(at)), "gaps": np.where(at % 3 == 1, np.nan, at)}
+    assert {*expected} == {*table.names}
+    for name, values in expected.items():
+        found = np.concatenate([chunk.columns[name] for chunk in chunks])
+        assert np.allclose(found, values, equal_nan=True), name
 
 
 def test_a_column_that_is_there_twice_is_refused_by_its_name(tmp_path):
