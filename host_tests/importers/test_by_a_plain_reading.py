@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from zerorate_tools.errors import BadRecording
 from zerorate_tools.importers import Options, parsed_mapping
 from zerorate_tools.importers.importing import _gathered, _How, _ready
+from zerorate_tools.importers.samples.spool import Runs
 from zerorate_tools.importers.tables.table import Chunk, Table
 from zerorate_tools.numbers import duration
 from zerorate_tools.recordings.checks import GAP
@@ -152,6 +153,24 @@ def at_rest(n):
     """n rows of a sensor of everything, 100 a second."""
     columns = {"t_s": np.arange(n) / 100, **{name: np.sin(np.arange(n) + 1.0) for name in RATES}}
     return columns | {name: np.full(n, 0.577) for name in FORCE} | {"temp_c": np.arange(n) + 1.0}
+
+
+@pytest.mark.parametrize(
+    ("rows", "second", "fits"),
+    [
+        *((101, 1000, True), (101, 900, True), (101, 890, False)),  # a tenth of it may be shared
+        *((101, -1100, True), (101, -1110, False), (101, 100, False), (99, 890, True)),
+    ],
+)
+def test_two_stretches_that_claim_the_same_time_are_two_recordings(rows, second, fits):
+    runs = Runs()
+    for number, begin in enumerate((0, second)):
+        runs.add(begin + 10.0 * np.arange(rows), np.arange(rows) + rows * number)
+    if fits:
+        runs.refuse_a_restart(PATH)
+        return
+    with pytest.raises(BadRecording, match=f"row {rows + 1}: "):
+        runs.refuse_a_restart(PATH)
 
 
 def test_a_log_in_very_many_pieces_is_read_as_in_one():
