@@ -1,14 +1,16 @@
 """What was learned since the chip was last known to be configured right can be taken back."""
 
-import random
 from array import array
 from pathlib import Path
 
+import numpy as np
 import pytest
 from zerorate import checked
 from zerorate.checked import CheckedCorrector
 from zerorate.corrector import Corrector, Sensor
 from zerorate_tools.layout import AXIS, SETTINGS, STATE, TURN_ON
+
+from .played import LSB, rest
 
 
 class Feed:
@@ -16,18 +18,15 @@ class Feed:
 
     def __init__(self):
         self.checked = CheckedCorrector(Corrector(Sensor(odr_hz=100.0)))
-        self.random = random.Random(3)
+        self.seed = 3
         self.sample = array("i", [0] * 7)
 
-    def rest(self, count, bias_lsb, status=checked.FRESH, first_status=None):
-        for number in range(count):
-            noise = self.random.gauss
-            gyro = [round(noise(bias_lsb, 6.5)) for _ in range(3)]
-            accel = [round(noise(mean, 40)) for mean in (0, 0, 16384)]
-            for place, word in enumerate([*accel, round(noise(-3000, 8)), *gyro]):
-                self.sample[place] = word
-            said = first_status if number == 0 and first_status is not None else status
-            self.checked.update(self.sample, 10000, said)
+    def rest(self, count, bias_lsb, status=checked.FRESH):
+        self.seed += 1
+        frames = rest(count / 100, self.seed, np.full(3, bias_lsb / LSB), temp=-3000)
+        for frame in np.rint(frames).astype(int).tolist():
+            self.sample[:] = array("i", frame)
+            self.checked.update(self.sample, 10000, status)
 
     def bias_lsb(self):
         return self.checked.corrector.bias_lsb(0)
@@ -46,7 +45,6 @@ def feed(rested):
     feed = Feed()
     feed.checked.corrector.state[:] = rested.checked.corrector.state
     feed.sample[:] = rested.sample
-    feed.random.setstate(rested.random.getstate())
     return feed
 
 

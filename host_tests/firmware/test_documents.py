@@ -1,7 +1,5 @@
 """What the documents say, read again in float64, beside what the firmware does by their letter."""
 
-from array import array
-
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -20,21 +18,18 @@ from zerorate_tools.layout import (
 )
 
 from . import motions
+from .played import play, rest
 
 HZ, LSB = 100, 131.0
 QUICK = {"promote_s": 0.5, "fit_s": 0.3, "stable_s": 0.5}
 
 
-def fed(corrector, bias_dps, temp_lsb, seed=1):
+def fed(corrector, bias_dps, temp_lsb):
     """The corrector behind a device at rest, lying flat: a temperature and (3,) bias a sample."""
-    random, frame = np.random.default_rng(seed), array("i", [0] * 7)
-    for rates, temp in zip(np.asarray(bias_dps) * LSB, temp_lsb):
-        accel = [0, 0, 16384] + random.normal(0, 40, 3)
-        words = [*accel, temp + random.normal(0, 8), *(rates + random.normal(0, 6.5, 3))]
-        for i, word in enumerate(np.rint(words)):
-            frame[i] = int(word)
-        corrector.update(frame, 1_000_000 // HZ)
-    return corrector
+    frames = rest(len(temp_lsb) / HZ)
+    frames[:, 3] += temp_lsb
+    frames[:, 4:] += np.asarray(bias_dps) * LSB
+    return play(frames, corrector)[0]
 
 
 def warmed(**options):

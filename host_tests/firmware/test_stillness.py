@@ -1,7 +1,5 @@
 """What counts as a rest, and what explain() says where there is none."""
 
-from array import array
-
 import numpy as np
 import pytest
 from zerorate import Corrector, Sensor
@@ -237,14 +235,11 @@ def test_a_rest_that_agrees_ends_what_was_held_back():
 
 def stopped(known_s, lsb_per_dps, noise_dps, hz=50.0):
     """A Corrector behind a rest so long, then a minute of 2 dps that nothing changes."""
-    noise = np.random.default_rng(4)
-    corrector = Corrector(Sensor(hz, gyro_lsb_per_dps=lsb_per_dps))
-    for n in range(round((known_s + 60) * hz)):
-        rates = [2.0] * 3 if n >= known_s * hz else 0.3 + noise.normal(0, noise_dps, 3)
-        force = [0, 0, 16384] + noise.normal(0, 60, 3)
-        frame = np.rint([*force, 0, *np.multiply(rates, lsb_per_dps)])
-        corrector.update(array("i", [int(word) for word in frame]), round(1e6 / hz))
-    return corrector
+    frames = rest(known_s + 60, 4, odr_hz=hz)
+    noise = np.random.default_rng(4).normal(0, noise_dps, (len(frames), 3))
+    frames[:, 4:] = (0.3 + noise) * lsb_per_dps
+    frames[round(known_s * hz) :, 4:] = 2.0 * lsb_per_dps
+    return play(frames, Corrector(Sensor(hz, gyro_lsb_per_dps=lsb_per_dps)))[0]
 
 
 @pytest.mark.parametrize("known_s, lsb_per_dps", [(0, 131.0), (30, 131.0), (30, 16.4)])
