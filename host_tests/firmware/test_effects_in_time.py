@@ -40,18 +40,6 @@ def test_play_operators_and_their_squares_are_those_of_the_reference(warm_up):
     assert (on_firmware(model, raw)[A_TICK - 1 :: A_TICK][1:] == got).all()
 
 
-def test_two_delays_keep_what_was_apart():
-    raw = {n: np.zeros(3000, int) for n in ("ax", "ay", "az", "gx", "gy", "gz")}
-    raw["temp"] = np.arange(3000)
-    slots = [
-        Slot(Term("temp", delay_s=40.0), (0.01, 0.0, 0.0)),
-        Slot(Term("temp", delay_s=110.0), (0.0, 0.01, 0.0)),
-    ]
-    together = on_firmware(loaded(slots), raw)
-    for axis, slot in enumerate(slots):
-        assert (together[:, axis] == on_firmware(loaded([slot]), raw)[:, axis]).all()
-
-
 def test_a_scale_error_is_of_the_very_sample(warm_up):
     raw = {name: values[:400] for name, values in warm_up[0].items()}
     slots = [
@@ -105,16 +93,6 @@ def test_a_model_of_before_follows_its_channel_once_a_tick():
     # a tick's mean is used in the tick behind it
     wanted = 0.001 * by_tick.mean(axis=1)[:-1]
     assert np.abs(got[A_TICK - 1 :: A_TICK, 0][1:] - wanted).max() < 5e-5
-
-
-def test_a_frame_that_is_no_reading_leaves_acceleration_as_it_was():
-    slots = [Slot(Term("acc_z", -2.0, 2.0), (0.1, 0, 0)), Slot(Term("rate_x", -9, 9), (0, 0.1, 0))]
-    state, model = array("i", [0] * STATE.FIT_WEIGHTS), loaded(slots)
-    turning = array("i", [0, 0, 16384, 0, 131, 0, 0])
-    for frame, good in ((turning, 1), (array("i", [-1] * 7), 0)):
-        effects.sense(state, model.e, frame, 250000, good)
-    assert state[STATE.EFFECT_Q8] / 256 / 131 == pytest.approx(0.1, abs=1e-4)
-    assert state[STATE.EFFECT_Q8 + 1] == 0
 
 
 def test_slots_of_all_kinds_add_up(warm_up):

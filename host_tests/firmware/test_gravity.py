@@ -97,14 +97,6 @@ def test_a_sub_unit_has_two_samples_at_least(options):
         gravity_settings(odr_hz=3.9, **options)
 
 
-def test_by_the_document_every_deviation_counts_and_sub_units_are_short():
-    words = GRAVITY_SETTINGS
-    literal = gravity_settings(document=True)
-    assert literal[words.DEAD_Q13] == literal[words.THRESHOLD] == literal[words.PUSH_Q2] == 0
-    assert literal[words.SUB_UNIT_US] == 250_000
-    assert gravity_settings(odr_hz=7.9, document=True)[words.SUB_UNIT_US] == 500_000
-
-
 @pytest.mark.parametrize("dt_us", [0, -1, 10_000_000])
 def test_a_gap_begins_the_sub_unit_anew_and_ends_no_interval(dt_us):
     settings = gravity_settings()

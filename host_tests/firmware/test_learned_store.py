@@ -204,23 +204,21 @@ class TestSavingAtRest:
     def schedule(self, memory, corrector):
         return SaveSchedule(make_store(memory), 3, tolerance=10, corrector=corrector)
 
-    def test_a_save_waits_for_a_rest(self, schedule, corrector):
-        assert not schedule.offer(OLD, [0, -10, 0], 0)
-        corrector.state[layout.STATE.STILLNESS] = layout.STILLNESS.STILL
-        assert schedule.offer(OLD, [0, -10, 0], 1)
-        assert schedule.postponed == 1
-
-    def test_but_no_longer_than_a_write_s_share_of_a_day(self, schedule):
-        assert not schedule.offer(OLD, [0, -10, 0], 10)
-        assert not schedule.offer(OLD, [0, -10, 0], 3609)
-        assert schedule.offer(OLD, [0, -10, 0], 3610)
-
-    def test_and_waits_anew_after_a_save(self, schedule):
-        schedule.offer(OLD, [0, -10, 0], 10)
-        assert schedule.offer(OLD, [0, -10, 0], 3610)
-        assert not schedule.offer(OLD, [0, -20, 0], 7300)
-        assert not schedule.offer(OLD, [0, -20, 0], 10899)
-        assert schedule.offer(OLD, [0, -20, 0], 10900)
+    @pytest.mark.parametrize(
+        ("rest_s", "offers"),
+        [
+            (1, {0: False, 1: True}),
+            # but no longer than a write's share of a day; and anew after a save
+            (99999, {10: False, 3609: False, 3610: True, 7300: False, 10899: False, 10900: True}),
+        ],
+    )
+    def test_a_save_waits_for_a_rest(self, schedule, corrector, rest_s, offers):
+        for now_s, written in offers.items():
+            if now_s >= rest_s:
+                corrector.state[layout.STATE.STILLNESS] = layout.STILLNESS.STILL
+            moved = -10 * (1 + schedule.saves)
+            assert schedule.offer(OLD, [0, moved, 0], now_s) is written
+        assert schedule.postponed == list(offers.values()).count(False)
 
     def test_the_longest_save_is_kept(self, schedule, corrector, monkeypatch):
         corrector.state[layout.STATE.STILLNESS] = layout.STILLNESS.STILL
