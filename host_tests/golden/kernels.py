@@ -29,7 +29,7 @@ from ..firmware.trace_on_host import corrector_for, frames
 
 _PLACES = {*"adefhpqwz", "at", "to", "ring"}  # parameters that say where in an array
 _MOST_READS = 3_000  # of one call: a changed word may ask for more rounds than there are words
-_READS, _VARIANTS = 1_500, 30  # of one recorded call's variants together
+_READS, _VARIANTS = 2_000, 40  # of one recorded call's variants together
 _MOST, _MOST_OF_LITTLE = 1 << 29, 1 << 11  # what a word is changed to at most
 
 
