@@ -92,12 +92,12 @@ class Fed:
         self.learned = []
         self.seconds = 0.0
 
-    def feed(self, motion, keep=list):
+    def feed(self, motion):
         dt_us = round(1e6 / motion.hz)
         scale = 256 * GYRO_LSB_PER_DPS
         for sample in motion.samples.tolist():
             self.seconds += 1 / motion.hz
-            if self.update(self.state, self.settings, keep(sample), dt_us):
+            if self.update(self.state, self.settings, sample, dt_us):
                 bias, sigma = (np.array(self.state[a : a + 3]) / scale for a in self.at)
                 self.learned.append((self.seconds, bias, sigma))
             self.after_each()
@@ -159,22 +159,18 @@ def put_packed(state, at, values):
         pack(state, at + i, MOTION.T)
 
 
-def covariance_at(state, count=STATES):
+def covariance_at(state):
     """The covariance that the filter holds, over the push's variance."""
-    held, matrix = (
-        packed_at(state, MOTION.KNOWN, STATES * (STATES + 1) // 2),
-        np.zeros((STATES, STATES)),
-    )
-    matrix[np.tril_indices(STATES)] = held
-    matrix = matrix + np.tril(matrix, -1).T
-    return matrix[:count, :count]
+    matrix = np.zeros((STATES, STATES))
+    matrix[np.tril_indices(STATES)] = packed_at(state, MOTION.KNOWN, STATES * (STATES + 1) // 2)
+    return matrix + np.tril(matrix, -1).T
 
 
 def put_covariance(state, matrix):
     put_packed(state, MOTION.KNOWN, matrix[np.tril_indices(STATES)])
 
 
-def positive(draw, size=1.0, count=3):
-    """A random positive definite matrix."""
-    root = draw.normal(size=(count, count))
-    return size * (root @ root.T + 0.1 * np.eye(count))
+def positive(draw, size):
+    """A random positive definite matrix of all states."""
+    root = draw.normal(size=(STATES, STATES))
+    return size * (root @ root.T + 0.1 * np.eye(STATES))

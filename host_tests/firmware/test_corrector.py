@@ -6,7 +6,6 @@ import pytest
 from zerorate import Corrector, Sensor
 from zerorate.gravity.gravity_settings import gravity_settings
 from zerorate.motion.motion_settings import motion_settings
-from zerorate.rest import bias
 from zerorate.settings import DEFAULTS
 from zerorate.storage.codes import EMPTY, LOADED, OTHER_BINDING, OUT_OF_RANGE, UNREADABLE
 from zerorate.storage.soundness import is_sound
@@ -44,19 +43,6 @@ def learned():
 def store_for(corrector, binding=b"\x68\0\0\0", memory=None):
     size = 4 * len(corrector.state)
     return Store(memory or FakeMemory(2 * size + 100), binding, size)
-
-
-def test_by_default_an_estimator_never_speaks_without_its_neighbours(learned):
-    assert [learned.source(i) for i in range(3)] == [bias.FIT] * 3
-
-
-def test_the_document_on_rests_learns_no_motion():
-    corrector = Corrector(document=True, every=False)
-    frame = array("i", [0] * 7)
-    for n in range(3000):
-        frame[:] = array("i", (3, n % 13, 16384, 1000, 2000 + n % 900, n % 700, 0))
-        corrector.update(frame, PERIOD_US)
-    assert [corrector.source(i) for i in range(3)] == [bias.NONE] * 3
 
 
 def test_the_documents_forms_of_all_three_are_within_reach():

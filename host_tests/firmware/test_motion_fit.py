@@ -82,7 +82,7 @@ def filled(state, draw, accepted):
     row = np.rint(draw.normal(0, 8000, SIZE))
     row[0] *= 3
     put_words(state, MOTION.WINDOW_ROWS, row)
-    matrix, mean = positive(draw, 1e-3, STATES), draw.normal(0, 1e5, STATES)
+    matrix, mean = positive(draw, 1e-3), draw.normal(0, 1e5, STATES)
     bias, push = draw.normal(0, 1e5, 3), 10.0 ** draw.uniform(13, 15)
     put_covariance(state, matrix)
     put_packed(state, MOTION.MEAN, mean)
@@ -137,7 +137,7 @@ def test_the_slope_over_temperature_is_a_kalman_filters(state, draw, degrees):
     start = value_at(SETTINGS, MOTION_SETTINGS.TEMP_SLOPE_START) / PUSH
     walk = value_at(SETTINGS, MOTION_SETTINGS.BIAS_WALK) / PUSH
     assert slopes_at(state) == pytest.approx(np.outer([0, 0, start], np.ones(3)), rel=1e-5)
-    means, matrix = draw.normal(0, 1e5, 3), positive(draw, 1e-6, STATES)
+    means, matrix = draw.normal(0, 1e5, 3), positive(draw, 1e-6)
     slopes, covariances, spreads = np.zeros(3), np.zeros(3), np.full(3, start)
     put_covariance(state, matrix)
     put_packed(state, MOTION.MEAN, means)
@@ -189,7 +189,7 @@ def test_what_is_published_is_the_mean_under_a_prior_with_cauchys_tails(state, d
     """Rounds of a normal prior of variance (usual^2 + b^2) / 2, by numpy."""
     lsb = value_at(SETTINGS, MOTION_SETTINGS.LSB_A_UNIT)
     usual = value_at(SETTINGS, MOTION_SETTINGS.USUAL)
-    matrix = positive(draw, usual * 4 / PUSH, STATES)
+    matrix = positive(draw, usual * 4 / PUSH)
     bias = draw.normal(0, 3, 3) * usual**0.5
     put_covariance(state, matrix)
     put_packed(state, MOTION.MEAN, bias)
