@@ -17,7 +17,6 @@ _LSB = (131.0, 16384.0)
 _SAMPLES, _PART = 2400, 32
 _CALM = range(900, 1100)  # the device rests as it lies
 _ONE = 1 << 28
-BIAS_LSB = (400, -900, 180)  # of the last frames
 
 
 def frames():
