@@ -73,7 +73,7 @@ def test_the_matrix_of_a_device_that_never_rests_is_found_and_deployed(recorded,
     assert {s["source"] for s in model["slots"]} == {"rate_x", "rate_y", "rate_z"}
 
 
-def test_beside_a_recording_at_rest_those_that_only_move_show_the_matrix(recorded, tmp_path):
+def test_beside_a_recording_at_rest_those_that_only_move_are_looked_at(recorded, tmp_path):
     rest = Recording(dict(handled(4, _MATRIX, dps=0.0).columns), _SCALES, "rest")
     write_recording(rest, tmp_path / "rest.parquet")
     logs = [recorded(1, _MATRIX), tmp_path / "rest.parquet", recorded(2, _MATRIX)]
@@ -84,14 +84,9 @@ def test_beside_a_recording_at_rest_those_that_only_move_show_the_matrix(recorde
     assert np.abs(off).max() < 0.001
     alone = [note for note in result["gate"]["notes"] if "looked at in motion alone" in note]
     assert len(alone) == 2
-
-
-def test_that_motion_beside_a_rest_shows_nothing_is_said(recorded, tmp_path):
-    rest = Recording(dict(handled(4, _MATRIX, dps=0.0).columns), _SCALES, "rest")
-    write_recording(rest, tmp_path / "rest.parquet")
-    none = recorded(1, np.zeros((3, 3)), minutes=2.0)
-    result = close([none, tmp_path / "rest.parquet"], tmp_path / "closed")
-    assert any("nothing in motion" in note for note in result["gate"]["notes"])
+    logs[0] = recorded(1, np.zeros((3, 3)), minutes=2.0)
+    nothing = close(logs[:2], tmp_path / "closed")
+    assert any("nothing in motion" in note for note in nothing["gate"]["notes"])
 
 
 def test_one_recording_alone_is_judged_on_windows_left_out(recorded, tmp_path):

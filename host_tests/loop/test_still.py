@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from zerorate_bench.loop.trials import NOISES_DPS, RATES_HZ, share_used, shares_with_turn
 from zerorate_tools.loop.analyse import analyse
-from zerorate_tools.loop.motion.scales_and_timing import in_motion, slots_of, without_scales
+from zerorate_tools.loop.motion.scales_and_timing import in_motion, slots_of
 from zerorate_tools.loop.read.blocks import session_of
-from zerorate_tools.loop.read.reference import RATES, Reference
+from zerorate_tools.loop.read.reference import Reference
 from zerorate_tools.loop.read.still import still_ticks
 from zerorate_tools.loop.read.ticks import read_ticks
 from zerorate_tools.loop.report.unexplained import not_excluded
@@ -99,7 +99,6 @@ def test_a_rest_at_any_rate_and_noise_is_used_and_a_turn_is_not(tmp_path, odr_hz
 MATRIX = [[0.0, 0.02, -0.01], [0.01, 0.0, 0.02], [-0.02, 0.01, 0.0]]
 SCALE = {"kind": "scale", "dps": [0.01, -0.02, 0.015]}
 CROSS = {"kind": "scale", "dps": 1.0, "matrix": MATRIX}
-LATE = {"kind": "timing", "delay_ms": 5.0}
 HANDLED = [{"kind": "rest", "s": 20}, {"kind": "hand", "s": 40}]
 TURNED = [
     bout
@@ -113,9 +112,8 @@ TURNED = [
 ]
 
 
-def sessions(folder, effect, motion, attitude, count=3, rates=False):
-    """(sessions of five minutes at 25 Hz, their logs); the accelerometer is off by 30 mg. rates:
-    whether true ones are there."""
+def sessions(folder, effect, motion, attitude, count=3):
+    """(sessions of five minutes at 25 Hz, their logs); the accelerometer is off by 30 mg."""
     description = {
         "sessions": count,
         "sensor": {"odr_hz": 25.0, "accel_bias_g": [0.03, -0.02, 0.04]},
@@ -127,8 +125,6 @@ def sessions(folder, effect, motion, attitude, count=3, rates=False):
         columns = dict(recording.columns)
         for name, q in zip(("qw", "qx", "qy", "qz"), truth.attitude.T if attitude else ()):
             columns[name] = np.rint(q * 2**29).astype(np.int32)
-        for name, dps in zip(RATES, truth.rate_dps.T if rates else ()):
-            columns[name] = np.rint(dps * recording.scales.gyro_lsb_per_dps).astype(np.int32)
         path = folder / f"{len(made)}.parquet"
         write_recording(replace(recording, columns=columns), path)
         made.append(session_of(read_ticks(path), 20.0))
@@ -147,14 +143,13 @@ def test_nothing_is_found_in_the_motion_of_a_sensor_without_fault(tmp_path, atti
     assert motion.rate_scale is not None and not motion.found and slots_of(motion) == []
 
 
-@pytest.mark.parametrize("attitude", [True, False], ids=["attitude", "gravity"])
 @pytest.mark.parametrize(
-    ("effect", "kind", "matrix"),
+    ("effect", "kind", "matrix", "attitude"),
     [
-        (SCALE, "scale-factor", np.diag(SCALE["dps"])),
-        (CROSS, "cross-axis+turned-axes", np.array(MATRIX)),
+        (SCALE, "scale-factor", np.diag(SCALE["dps"]), True),
+        (CROSS, "cross-axis+turned-axes", np.array(MATRIX), False),
     ],
-    ids=["scale", "cross"],
+    ids=["scale by attitude", "cross-axis by gravity"],
 )
 def test_scale_and_cross_axis_are_named_and_measured(tmp_path, effect, kind, matrix, attitude):
     motion = shown(tmp_path, [effect], attitude)
@@ -170,21 +165,10 @@ def test_a_scale_that_turns_would_show_is_not_said_to_be_beyond_the_recordings(t
     assert "rate-scale" not in not_excluded(analyse(made, logs=logs))
 
 
-def test_beside_true_rates_what_turning_adds_is_taken_out_of_the_blocks_in_motion(tmp_path):
-    made, logs = sessions(tmp_path, [SCALE], HANDLED, False, count=2, rates=True)
-    left = without_scales(made[0], in_motion(made, [], logs)).rate_dps
-    assert np.nanstd(left, axis=0).max() < 0.7 * np.nanstd(made[0].rate_dps, axis=0).max()
-
-
 def test_an_attitude_makes_no_rest_of_motion(tmp_path):
     (with_it,), _ = sessions(tmp_path, [], HANDLED, True, count=1)
     (without,), _ = sessions(tmp_path, [], HANDLED, False, count=1)
     assert np.array_equal(with_it.available, without.available) and not with_it.moved.any()
-
-
-def test_readings_that_come_late_are_said_with_how_late(tmp_path):
-    motion = shown(tmp_path, [LATE], attitude=True)
-    assert motion.timing.found and motion.timing.delay_s == pytest.approx(5e-3, rel=0.05)
 
 
 def test_an_attitude_without_a_value_was_not_seen():

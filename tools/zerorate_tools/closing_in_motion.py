@@ -73,19 +73,16 @@ def _correct(writer: CorrectedWriter, log: Path, model: Model, test: bool) -> No
 
 def _result(shown: RateScale, names: list[str], held: list[str]) -> dict[str, Any]:
     nothing = [None] * 3
+    without = {"before_mdps": nothing, "after_mdps": nothing}
     found = [turning(shown)] if shown.found else []
     train = names if len(names) == 1 else [n for n in names if n not in held]
     unit = "windows within one recording" if len(names) == 1 else "power-on session"
     return {
         "split": {"unit": unit, "train": train, "test": held},
         "floor_mdps": nothing,
-        "before_mdps": nothing,
-        "after_mdps": nothing,
+        **without,
         "ci95_mdps": {"before": nothing, "after": nothing},
-        "effects": [
-            {**e, "before_mdps": nothing, "after_mdps": nothing, "confounded_with": []}
-            for e in found
-        ],
+        "effects": [{**effect, **without, "confounded_with": []} for effect in found],
         "events": [],
         "in_motion": {
             "before": round(shown.before, 3),
