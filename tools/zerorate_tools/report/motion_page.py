@@ -1,6 +1,6 @@
 """report.html of recordings in motion: before, after, and a picture of the matrix."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -52,10 +52,13 @@ def motion_page(result: Mapping[str, Any], folder: Path) -> str:
     before = np.array(m["matrix_percent"]) / 100
     correction = rate_matrix(read_model(folder / "model.bin"))
     after = None if correction is None else before + correction - np.eye(3)
-    targets = targets_of(before, after, np.array(m["ci95_percent"]) / 100)
-    widest = max(
-        [_LEAST_DEG, *(s for t in targets for r in t.readings for s in _spans(r, _is_seen(m)))]
-    )
+    ci95 = np.array(m["ci95_percent"]) / 100
+    targets = targets_of(before, after, ci95)
+    seen = 2 * np.median(ci95)  # an interval that is drawn whole: others run over the edge
+    readings = [r for t in targets for r in t.readings]
+    axes = [of for r in readings for of in ((r.right, r.right_ci), (r.up, r.up_ci))]
+    turns = [(r.turn - _TURN_DEG, r.turn_ci) for r in readings]
+    widest = _widest(axes, np.degrees(seen))
     ring = max(r for r in _RINGS_DEG if r <= max(widest, _RINGS_DEG[0]))
     return rendered(
         "motion.html.j2",
@@ -66,7 +69,7 @@ def motion_page(result: Mapping[str, Any], folder: Path) -> str:
         targets=targets,
         ring=ring,
         scale=_EDGE / (1.15 * widest),
-        turn_scale=_EDGE / (1.15 * max(_turn_span(targets, _is_seen(m)), _LEAST_DEG)),
+        turn_scale=_EDGE / (1.15 * _widest(turns, seen * _TURN_DEG)),
         edge=_EDGE,
         turn=_TURN_DEG,
         board=deployment(final(folder), ()),
@@ -95,17 +98,7 @@ def targets_of(
     return tuple(found)
 
 
-def _is_seen(m: Mapping[str, Any]) -> float:
-    """Degrees of an interval that is drawn whole: what was not seen runs over the edge."""
-    ci = np.array(m["ci95_percent"]) / 100
-    return float(np.degrees(2 * np.median(ci)))
-
-
-def _spans(reading: Reading, whole_deg: float) -> list[float]:
-    pairs = [(reading.right, reading.right_ci), (reading.up, reading.up_ci)]
-    return [abs(v) + min(c, whole_deg) for v, c in pairs]
-
-
-def _turn_span(targets: tuple[Target, ...], whole_deg: float) -> float:
-    whole = np.radians(whole_deg) * _TURN_DEG
-    return max(abs(r.turn - _TURN_DEG) + min(r.turn_ci, whole) for t in targets for r in t.readings)
+def _widest(drawn: Sequence[tuple[float, float]], whole_deg: float) -> float:
+    """How far values and their intervals reach from the middle. whole_deg: of the widest interval
+    that counts."""
+    return max([_LEAST_DEG, *(abs(value) + min(ci, whole_deg) for value, ci in drawn)])
