@@ -1,16 +1,8 @@
 """Every log of the corpus, as other tools write them: importing its modules registers them."""
 
-from . import (  # noqa: F401
-    arrays,
-    changed,
-    clocks,
-    flights,
-    phones,
-    robots,
-    sensors,
-    tools,
-    wearables,
-)
+# the order in which a page lists them
+# isort: off
+from . import phones, clocks, arrays, changed, flights, robots, sensors, tools, wearables  # noqa: F401
 from .world import CORPUS, Log, World
 
 __all__ = ["CORPUS", "Log", "World"]

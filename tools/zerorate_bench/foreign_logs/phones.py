@@ -1,40 +1,42 @@
 """Logs of phones: Sensor Logger, phyphox, SensorLog, Physics Toolbox, AndroSensor and their kin."""
 
 import json
-import zipfile
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from .world import BIAS_DPS, STANDARD_GRAVITY, World, log, table, text
+from .world import BIAS_DPS, EPOCH_NS, STANDARD_GRAVITY, Logs, World, table, text, zipped
 
-_EPOCH_NS = 1_700_000_000_000_000_000
+log = Logs(__name__)
+# fmt: off
+_GRAVITY = [0, 0, STANDARD_GRAVITY]
 
 
-def zipped(path: Path, files: list[Path], root: Path) -> Path:
-    """Files as one archive."""
-    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
-        for file in files:
-            archive.write(file, file.relative_to(root))
-    return path
+def _without_bias(world: World) -> np.ndarray:
+    """(n, 3) rad/s, of which the system took the bias away."""
+    return world.rad - np.radians(BIAS_DPS)
+
+
+def _ns(world: World) -> np.ndarray:
+    return EPOCH_NS + (world.t_s * 1e9).astype(np.int64)
 
 
 def _sensor_logger(folder: Path, world: World) -> list[Path]:
     """A file a sensor; of the two gyroscopes one is without the bias that the system took away, and
     of the accelerometers one is without gravity."""
-    t_ns = _EPOCH_NS + (world.t_s * 1e9).astype(np.int64)
-    head = "time,seconds_elapsed,z,y,x"
     late = world.t_s + 0.003
     seen = {
-        "Accelerometer": (world.t_s, world.mps2 - [0, 0, STANDARD_GRAVITY]),
-        "Gravity": (world.t_s, np.tile([0, 0, STANDARD_GRAVITY], (world.samples, 1))),
+        "Accelerometer": (world.t_s, world.mps2 - _GRAVITY),
+        "Gravity": (world.t_s, world.each(_GRAVITY)),
         "TotalAcceleration": (late, world.mps2),
-        "Gyroscope": (world.t_s, world.rad - np.radians(BIAS_DPS)),
+        "Gyroscope": (world.t_s, _without_bias(world)),
         "GyroscopeUncalibrated": (world.t_s, world.rad),
     }
+    head = "time,seconds_elapsed,z,y,x"
     files = [
-        text(folder / f"{name}.csv", table(head, t_ns, at, values[:, ::-1]))
+        text(folder / f"{name}.csv", table(head, _ns(world), at, values[:, ::-1]))
         for name, (at, values) in seen.items()
     ]
     return [*files, text(folder / "Metadata.csv", pd.DataFrame({"version": [3], "device": ["A"]}))]
@@ -59,61 +61,49 @@ def sensor_logger_file(folder: Path, world: World) -> Path:
 def two_chips(folder: Path, world: World) -> Path:
     for number, (chip, late_ms) in enumerate({"": 0, "second_": 4}.items()):
         t_ms = 801_439_402 + np.round(world.t_s * 1e3).astype(np.int64) + late_ms
-        utc_ns = _EPOCH_NS + t_ms * 1_000_000
-        times = "imuTimestamp,accuracy(more=better),utcTimestamp(nanos)"
-        rates, force = ",ang_vel{}_{}[rad/s]", ",acc{}_{}[m/s^2]"
+        times = t_ms, world.each(3), EPOCH_NS + t_ms * 1_000_000
+        more = "2" * number
         for sensor, column, values in (
-            ("accelerometer", force, world.mps2),
-            ("gyroscope", rates, world.rad - np.radians(BIAS_DPS)),
-            ("gyroscope_uncalibrated", rates, world.rad),
+            ("accelerometer", f"acc{more}_{{xyz}}[m/s^2]", world.mps2),
+            ("gyroscope", f"ang_vel{more}_{{xyz}}[rad/s]", _without_bias(world)),
+            ("gyroscope_uncalibrated", f"ang_vel{more}_uncal_{{xyz}}[rad/s]", world.rad),
         ):
-            of = f"{'2' * number}{'_uncal' * ('uncal' in sensor)}"
-            head = times + "".join(column.format(of, axis) for axis in "xyz")
-            frame = table(head, t_ms, np.full(len(t_ms), 3), utc_ns, values)
-            lines = f"{chip}{sensor} Non-wakeup,STMicro,2025-03-06\n{frame.to_csv(index=False)}"
-            (folder / f"{chip}{sensor}_{number + 1}.csv").write_text(lines)
+            names = f"imuTimestamp,accuracy(more=better),utcTimestamp(nanos),{column}"
+            lines = table(names, *times, values).to_csv(index=False)
+            head = f"{chip}{sensor} Non-wakeup,STMicro,2025-03-06\n"
+            (folder / f"{chip}{sensor}_{number + 1}.csv").write_text(head + lines)
     return folder
 
 
-def _long(world: World, names: tuple[str, str], time: str = "time") -> pd.DataFrame:
-    rates = table(f"{time},sensor,x,y,z", world.t_s, np.full(world.samples, names[0]), world.rad)
-    force = table(f"{time},sensor,x,y,z", world.t_s, np.full(world.samples, names[1]), world.mps2)
+def _long(world: World, gyro: str, accel: str, names: str = "time,sensor,{xyz}") -> pd.DataFrame:
+    """Rows of two sensors in turn, told by their names."""
+    rates = table(names, world.t_s, world.each(gyro), world.rad)
+    force = table(names, world.t_s, world.each(accel), world.mps2)
     both = pd.concat([rates, force], keys=[0, 1]).reset_index(names=["of", "row"])
     return both.sort_values(["row", "of"]).drop(columns=["of", "row"])
 
 
-@log("Sensor Logger, its JSON of all sensors")
-def sensor_logger_json(folder: Path, world: World) -> Path:
-    frame = _long(world, ("GyroscopeUncalibrated", "TotalAcceleration"), "seconds_elapsed")
-    rows = frame.astype(str).to_dict("records")
-    (folder / "in.json").write_text(json.dumps(rows))
-    return folder / "in.json"
+def _sensor_logger_rows(world: World) -> str:
+    names = "GyroscopeUncalibrated", "TotalAcceleration", "seconds_elapsed,sensor,{xyz}"
+    return json.dumps(_long(world, *names).astype(str).to_dict("records"))
 
 
-@log("rows of several sensors: time,sensor,x,y,z")
-def rows_of_sensors(folder: Path, world: World) -> Path:
-    return text(folder / "in.csv", _long(world, ("gyro", "accel")))
+log.text("Sensor Logger, its JSON of all sensors", _sensor_logger_rows, "in.json")
+log.csv("rows of several sensors: time,sensor,x,y,z", lambda w: _long(w, "gyro", "accel"))
+log.csv("rows of several sensors, told by Android's numbers",
+    lambda w: _long(w, "4", "1", "time,sensor_type,{xyz}"))
+log.csv("rows of several sensors without a line of names",
+    lambda w: _long(w, "GYRO", "ACC"), header=False)
 
 
-@log("rows of several sensors, told by Android's numbers")
-def rows_of_numbered_sensors(folder: Path, world: World) -> Path:
-    frame = _long(world, ("4", "1")).rename(columns={"sensor": "sensor_type"})
-    return text(folder / "in.csv", frame)
-
-
-@log("rows of several sensors without a line of names")
-def rows_of_sensors_unnamed(folder: Path, world: World) -> Path:
-    return text(folder / "in.csv", _long(world, ("GYRO", "ACC")), header=False)
-
-
-def _phyphox(folder: Path, world: World, **how) -> list[Path]:
-    rates = "Time (s),Gyroscope x (rad/s),Gyroscope y (rad/s),Gyroscope z (rad/s)"
-    force = "Time (s),Acceleration x (m/s^2),Acceleration y (m/s^2),Acceleration z (m/s^2)"
+def _phyphox(folder: Path, world: World, **how: Any) -> list[Path]:
+    rates = table("Time (s),Gyroscope {xyz} (rad/s)", world.t_s, world.rad)
+    force = table("Time (s),Acceleration {xyz} (m/s^2)", world.t_s, world.mps2)
     meta = pd.DataFrame({"property": ["version"], "value": ["1.1.16"]})
     times = pd.DataFrame({"event": ["START", "PAUSE"], "experiment time": [0.0, world.t_s[-1]]})
     return [
-        text(folder / "Accelerometer.csv", table(force, world.t_s, world.mps2), **how),
-        text(folder / "Gyroscope.csv", table(rates, world.t_s, world.rad), **how),
+        text(folder / "Accelerometer.csv", force, **how),
+        text(folder / "Gyroscope.csv", rates, **how),
         text(folder / "meta" / "device.csv", meta),
         text(folder / "meta" / "time.csv", times),
     ]
@@ -126,19 +116,16 @@ def phyphox_zip(folder: Path, world: World) -> Path:
 
 @log("phyphox, the zip of rates and acceleration without gravity")
 def phyphox_free(folder: Path, world: World) -> Path:
-    names = "Time (s)," + ",".join(f"Linear Acceleration {a} (m/s^2)" for a in "xyz")
+    names = "Time (s),Linear Acceleration {xyz} (m/s^2)"
     gyro = _phyphox(folder / "in", world)[1]
-    free = table(names, world.t_s, world.mps2 - [0, 0, STANDARD_GRAVITY])
+    free = table(names, world.t_s, world.mps2 - _GRAVITY)
     files = [text(folder / "in" / "Linear Accelerometer.csv", free), gyro]
     return zipped(folder / "in.zip", files, folder / "in")
 
 
-@log("phyphox, one file with an absolute value")
-def phyphox_file(folder: Path, world: World) -> Path:
-    names = [f"Gyroscope {a} (rad/s)" for a in "xyz"]
-    names = ["Time (s)", *names, "Absolute (rad/s)"]
-    length = np.linalg.norm(world.rad, axis=1)
-    return text(folder / "Raw Data.csv", table(names, world.t_s, world.rad, length))
+log.csv("phyphox, one file with an absolute value",
+    lambda w: table("Time (s),Gyroscope {xyz} (rad/s),Absolute (rad/s)", w.t_s, w.rad,
+        np.linalg.norm(w.rad, axis=1)), name="Raw Data.csv")
 
 
 @log("phyphox, semicolons and decimal commas")
@@ -146,56 +133,38 @@ def phyphox_commas(folder: Path, world: World) -> Path:
     return _phyphox(folder, world, sep=";", decimal=",", float_format="%.9E")[1]
 
 
-@log("SensorLog of iOS: CoreMotion's corrected rates before the gyroscope's own")
-def sensor_log(folder: Path, world: World) -> Path:
-    own = [f"gyroRotation{a}(rad/s)" for a in "XYZ"]
-    made = [f"motionRotationRate{a}(rad/s)" for a in "XYZ"]
-    user = [f"motionUserAcceleration{a}(G)" for a in "XYZ"]
-    force = [f"accelerometerAcceleration{a}(G)" for a in "XYZ"]
-    names = ["loggingTime(txt)", "motionTimestamp_sinceReboot(s)", *made, *user]
-    names += ["accelerometerTimestamp_sinceReboot(s)", *force]
-    names += ["gyroTimestamp_sinceReboot(s)", *own]
-    said = pd.to_datetime(_EPOCH_NS + (world.t_s * 1e9).astype(np.int64))
-    said = said.strftime("%Y-%m-%dT%H:%M:%S.%f+02:00")
-    free = world.g - [0, 0, 1]
-    less = world.rad - np.radians(BIAS_DPS)
+def _sensor_log(world: World) -> pd.DataFrame:
+    said = pd.to_datetime(_ns(world)).strftime("%Y-%m-%dT%H:%M:%S.%f+02:00")
     at = world.t_s + 4e5
-    frame = table(names, said, at, less, free, at, world.g, at, world.rad)
-    return text(folder / "in.csv", frame)
+    return table(
+        "loggingTime(txt),motionTimestamp_sinceReboot(s),motionRotationRate{XYZ}(rad/s),"
+        "motionUserAcceleration{XYZ}(G),accelerometerTimestamp_sinceReboot(s),"
+        "accelerometerAcceleration{XYZ}(G),gyroTimestamp_sinceReboot(s),gyroRotation{XYZ}(rad/s)",
+        *(said, at, _without_bias(world), world.g - [0, 0, 1], at, world.g, at, world.rad),
+    )
 
 
-@log("Physics Toolbox: gFx in g beside ax without gravity")
-def physics_toolbox(folder: Path, world: World) -> Path:
-    free = (world.g - [0, 0, 1]) * STANDARD_GRAVITY
-    names = "time,gFx,gFy,gFz,ax,ay,az,wx,wy,wz"
-    return text(folder / "in.csv", table(names, world.t_s, world.g, free, world.rad))
+log.csv("SensorLog of iOS: CoreMotion's corrected rates before the gyroscope's own", _sensor_log)
+log.csv("Physics Toolbox: gFx in g beside ax without gravity",
+    lambda w: table("time,gF{xyz},a{xyz},w{xyz}", w.t_s, w.g, (w.g - [0, 0, 1]) * STANDARD_GRAVITY,
+        w.rad))
+log.csv("AndroSensor: linear acceleration and gravity beside the accelerometer",
+    lambda w: table("LINEAR ACCELERATION {XYZ} (m/s²),GRAVITY {XYZ} (m/s²),"
+        "ACCELEROMETER {XYZ} (m/s²),GYROSCOPE {XYZ} (rad/s),Time since start in ms ",
+        w.mps2 - _GRAVITY, w.each(_GRAVITY), w.mps2, w.rad, w.t_s * 1e3), sep=";")
 
 
-@log("AndroSensor: linear acceleration and gravity beside the accelerometer")
-def andro_sensor(folder: Path, world: World) -> Path:
-    kinds = ["LINEAR ACCELERATION", "GRAVITY", "ACCELEROMETER"]
-    names = [f"{kind} {a} (m/s²)" for kind in kinds for a in "XYZ"]
-    names += [f"GYROSCOPE {a} (rad/s)" for a in "XYZ"] + ["Time since start in ms "]
-    down = np.tile([0, 0, STANDARD_GRAVITY], (world.samples, 1))
-    frame = table(names, world.mps2 - down, down, world.mps2, world.rad, world.t_s * 1e3)
-    return text(folder / "in.csv", frame, sep=";")
-
-
-@log("Android's GnssLogger: lines of many kinds, each with names of its own")
-def gnss_logger(folder: Path, world: World) -> Path:
+def _gnss_logger(world: World) -> str:
     axes = ",".join(f"UncalGyro{a}RadPerSec" for a in "XYZ")
     head = f"# Header\n# UncalGyro,utcTimeMillis,elapsedRealtimeNanos,{axes}\n"
     head += "# UncalAccel,utcTimeMillis,elapsedRealtimeNanos,UncalAccelXMps2,Y,Z\n"
     lines = [
-        f"{kind},{_EPOCH_NS // 10**6 + int(t * 1e3)},{int(t * 1e9)},{x:.9g},{y:.9g},{z:.9g}\n"
+        f"{kind},{EPOCH_NS // 10**6 + int(t * 1e3)},{int(t * 1e9)},{x:.9g},{y:.9g},{z:.9g}\n"
         for t, rate, force in zip(world.t_s, world.rad, world.mps2)
         for kind, (x, y, z) in (("UncalGyro", rate), ("UncalAccel", force))
     ]
-    (folder / "in.txt").write_text(head + "".join(lines))
-    return folder / "in.txt"
+    return head + "".join(lines)
 
 
-@log("columns of German names")
-def german(folder: Path, world: World) -> Path:
-    names = ["Zeit (s)", *(f"Drehrate {a} (°/s)" for a in "XYZ")]
-    return text(folder / "in.csv", table(names, world.t_s, world.dps))
+log.text("Android's GnssLogger: lines of many kinds, each with names of its own", _gnss_logger)
+log.csv("columns of German names", lambda w: table("Zeit (s),Drehrate {XYZ} (°/s)", w.t_s, w.dps))

@@ -6,42 +6,24 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from .phones import _EPOCH_NS, zipped
-from .world import STANDARD_GRAVITY, World, log, table, text
+from .world import AFTERNOON, STANDARD_GRAVITY, Logs, World, table, text, zipped
 
-_DATE = pd.Timestamp("2026-05-01T14:17:54.120")
-
-
-def _at(world: World):
-    return _DATE + pd.to_timedelta(world.t_s, unit="s")
+log = Logs(__name__)
+# fmt: off
+_BOOTED_US = 10**8
+_DATE = "%Y-%m-%d %H:%M:%S.%f"
 
 
-def _ns(world: World) -> np.ndarray:
-    return _EPOCH_NS + np.rint(world.t_s * 1e9).astype(np.int64)
-
-
-def _axes(pattern: str, letters: str = "xyz") -> list[str]:
-    return [pattern.format(axis) for axis in letters]
-
-
-@log("Physics Toolbox: a clock with a colon before its milliseconds")
-def physics_toolbox_clock(folder: Path, world: World) -> Path:
-    said = _at(world).strftime("%H:%M:%S:%f").str[:-3]
-    names = ["time", *_axes("gF{}"), *_axes("w{}")]
-    return text(folder / "in.csv", table(names, said, world.g, world.rad))
-
-
-@log("Physics Toolbox of iOS: dates")
-def physics_toolbox_dates(folder: Path, world: World) -> Path:
-    said = _at(world).strftime("%Y-%m-%d %H:%M:%S.%f").str[:-2]
-    names = ["time", *_axes("gF{}"), *_axes("w{}")]
-    return text(folder / "in.csv", table(names, said, world.g, world.rad))
+log.csv("Physics Toolbox: a clock with a colon before its milliseconds",
+    lambda w: table("time,gF{xyz},w{xyz}", w.dates("%H:%M:%S:%f", 3), w.g, w.rad))
+log.csv("Physics Toolbox of iOS: dates",
+    lambda w: table("time,gF{xyz},w{xyz}", w.dates(_DATE, 4), w.g, w.rad))
 
 
 def _metawear(folder: Path, name: str, unit: str, world: World, values: np.ndarray) -> Path:
-    names = ["epoch (ms)", "time (-13:00)", "elapsed (s)", *_axes(f"{{}}-axis ({unit})")]
-    said = _at(world).strftime("%Y-%m-%dT%H.%M.%S.%f").str[:-3]
-    frame = table(names, _ns(world) // 10**6, said, world.t_s, values)
+    names = f"epoch (ms),time (-13:00),elapsed (s),{{xyz}}-axis ({unit})"
+    said = world.dates("%Y-%m-%dT%H.%M.%S.%f", 3)
+    frame = table(names, world.ns // 10**6, said, world.t_s, values)
     return text(folder / f"MetaWear_2026-05-01T14.17.54.120_D1C36F1F_{name}_100.000Hz.csv", frame)
 
 
@@ -57,92 +39,84 @@ def metawear_folder(folder: Path, world: World) -> Path:
 
 
 def _sensor_server(world: World, typed: bool) -> str:
-    def line(kind: str, at: int, values: np.ndarray) -> str:
-        whose = {"type": f"android.sensor.{kind}"} if typed else {}
-        return json.dumps({"accuracy": 3, "timestamp": at, "values": values.tolist(), **whose})
-
-    kinds = {
-        "gyroscope_uncalibrated": world.rad,
-        **({"accelerometer": world.mps2} if typed else {}),
-    }
-    rows = zip(_ns(world).tolist(), *kinds.values())
-    return "".join(f"{line(k, at, v)}\n" for at, *of in rows for k, v in zip(kinds, of))
-
-
-@log("Android's SensorServer, messages of one sensor", "--gyro-unit rad/s")
-def sensor_server(folder: Path, world: World) -> Path:
-    (folder / "gyroscope.jsonl").write_text(_sensor_server(world, typed=False))
-    return folder / "gyroscope.jsonl"
-
-
-@log("Android's SensorServer, messages of two sensors", "--gyro-unit rad/s")
-def sensor_server_two(folder: Path, world: World) -> Path:
-    (folder / "in.jsonl").write_text(_sensor_server(world, typed=True))
-    return folder / "in.jsonl"
-
-
-@log("SensorLog of iOS: bars between the columns")
-def sensor_log_bars(folder: Path, world: World) -> Path:
-    names = [
-        "loggingTime(txt)",
-        "loggingSample(N)",
-        *_axes("accelerometerAcceleration{}(G)", "XYZ"),
+    """A message a line, of two sensors, each with its type, or of one."""
+    kinds = {"gyroscope_uncalibrated": world.rad}
+    if typed:
+        kinds["accelerometer"] = world.mps2
+    lines = [
+        {"accuracy": 3, "timestamp": at, "values": values.tolist()}
+        | ({"type": f"android.sensor.{kind}"} if typed else {})
+        for at, *of in zip(world.ns.tolist(), *kinds.values())
+        for kind, values in zip(kinds, of)
     ]
-    names += ["gyroTimestamp_sinceReboot(s)", *_axes("gyroRotation{}(rad/s)", "XYZ"), "label(N)"]
-    said = _at(world).strftime("%Y-%m-%d %H:%M:%S.%f").str[:-3] + " +0200"
-    none = np.zeros(world.samples, int)
-    frame = table(names, said, none.cumsum(), world.g, world.t_s + 4e5, world.rad, none)
-    return text(folder / "in.csv", frame, sep="|")
+    return "".join(f"{json.dumps(line)}\n" for line in lines)
 
 
-@log("SensorLog of iOS, its JSON")
-def sensor_log_json(folder: Path, world: World) -> Path:
-    names = [*_axes("accelerometerAcceleration{}", "XYZ"), *_axes("gyroRotation{}", "XYZ")]
-    frame = table(["gyroTimestamp_sinceReboot", *names], world.t_s + 4e5, world.g, world.rad)
-    (folder / "in.json").write_text(json.dumps(frame.astype(str).to_dict("records")))
-    return folder / "in.json"
+log.text("Android's SensorServer, messages of one sensor",
+    lambda w: _sensor_server(w, typed=False), "gyroscope.jsonl", words="--gyro-unit rad/s")
+log.text("Android's SensorServer, messages of two sensors",
+    lambda w: _sensor_server(w, typed=True), "in.jsonl", words="--gyro-unit rad/s")
+log.csv("SensorLog of iOS: bars between the columns",
+    lambda w: table("loggingTime(txt),loggingSample(N),accelerometerAcceleration{XYZ}(G),"
+        "gyroTimestamp_sinceReboot(s),gyroRotation{XYZ}(rad/s),label(N)",
+        w.dates(_DATE, 3) + " +0200", w.each(0), w.g, w.t_s + 4e5, w.rad, w.each(0)), sep="|")
 
 
-@log("Xsens MT Manager: time in eight columns of UTC", "--hz 100")
-def mt_manager(folder: Path, world: World) -> Path:
-    before = "// General information:\n//  MT Manager version: 2022.0.0\n// Update Rate: 100.0Hz\n"
-    parts = ["Nano", "Year", "Month", "Day", "Hour", "Minute", "Second", "Valid"]
-    names = ["PacketCounter", *(f"UTC_{part}" for part in parts)]
-    names += [*_axes("Acc_{}", "XYZ"), *_axes("Gyr_{}", "XYZ"), *_axes("Mag_{}", "XYZ")]
-    at, one = _at(world), np.ones(world.samples, int)
-    utc = (_ns(world) % 10**9, one * 2026, one * 5, one, at.hour, at.minute, at.second, one * 55)
-    mag = np.tile([0.4, 0.1, -0.9], (world.samples, 1))
-    frame = table(names, one.cumsum(), *utc, world.mps2, world.rad, mag)
-    return text(folder / "MT_0380.txt", frame, before, sep="\t", float_format="%.6f")
+def _sensor_log_rows(world: World) -> str:
+    names = "gyroTimestamp_sinceReboot,accelerometerAcceleration{XYZ},gyroRotation{XYZ}"
+    frame = table(names, world.t_s + 4e5, world.g, world.rad)
+    return json.dumps(frame.astype(str).to_dict("records"))
 
 
-@log("Movella DOT: a sign of copyright above its table", "--gyro-unit dps --time-unit us")
-def movella_rates(folder: Path, world: World) -> Path:
-    before = "sep=,\nDeviceTag:,Xsens DOT\nFirmwareVersion:,3.0.0\nOutputRate:,100Hz\n"
-    before += "Measurement Mode:,Sensor fusion Mode - Rate quantities\n"
-    before += "StartTime: ,2026-05-01_14:17:54_120 CEST\n© Movella Technologies B. V. 2005-2026\n\n"
-    names = ["PacketCounter", "SampleTimeFine", *_axes("Acc_{}", "XYZ"), *_axes("Gyr_{}", "XYZ")]
-    at = np.rint(world.t_s * 1e6).astype(np.int64) + 2_268_972_329
-    count = np.arange(world.samples)
-    return text(folder / "in.csv", table(names, count, at, world.mps2, world.dps), before)
+log.text("SensorLog of iOS, its JSON", _sensor_log_rows, "in.json")
+
+
+def _mt_manager(world: World) -> pd.DataFrame:
+    at = pd.Timestamp(AFTERNOON) + pd.to_timedelta(world.t_s, unit="s")
+    date = world.ns % 10**9, *map(world.each, (2026, 5, 1))
+    return table(
+        "PacketCounter,UTC_Nano,UTC_Year,UTC_Month,UTC_Day,UTC_Hour,UTC_Minute,UTC_Second,"
+        "UTC_Valid,Acc_{XYZ},Gyr_{XYZ},Mag_{XYZ}",
+        *(world.count + 1, *date, at.hour, at.minute, at.second, world.each(55)),
+        *(world.mps2, world.rad, world.each([0.4, 0.1, -0.9])),
+    )
+
+
+log.csv("Xsens MT Manager: time in eight columns of UTC",
+    _mt_manager,
+    "// General information:\n//  MT Manager version: 2022.0.0\n// Update Rate: 100.0Hz\n",
+    name="MT_0380.txt", words="--hz 100", sep="\t", float_format="%.6f")
+_MOVELLA = """\
+sep=,
+DeviceTag:,Xsens DOT
+FirmwareVersion:,3.0.0
+OutputRate:,100Hz
+Measurement Mode:,Sensor fusion Mode - Rate quantities
+StartTime: ,2026-05-01_14:17:54_120 CEST
+© Movella Technologies B. V. 2005-2026
+
+"""
+log.csv("Movella DOT: a sign of copyright above its table",
+    lambda w: table("PacketCounter,SampleTimeFine,Acc_{XYZ},Gyr_{XYZ}", w.count,
+        w.whole(1e6, 2_268_972_329), w.mps2, w.dps), _MOVELLA,
+    words="--gyro-unit dps --time-unit us")
 
 
 @log("EuRoC, the folder mav0")
 def euroc_folder(folder: Path, world: World) -> Path:
-    names = ["#timestamp [ns]", *_axes("w_RS_S_{} [rad s^-1]"), *_axes("a_RS_S_{} [m s^-2]")]
-    text(folder / "mav0" / "imu0" / "data.csv", table(names, _ns(world), world.rad, world.mps2))
-    images = table(
-        "#timestamp [ns],filename", _ns(world)[::5], [f"{t}.png" for t in _ns(world)[::5]]
-    )
-    text(folder / "mav0" / "cam0" / "data.csv", images)
+    names = "#timestamp [ns],w_RS_S_{xyz} [rad s^-1],a_RS_S_{xyz} [m s^-2]"
+    tables = {
+        "imu0": table(names, world.ns, world.rad, world.mps2),
+        "cam0": table("#timestamp [ns],filename", at := world.ns[::5], [f"{t}.png" for t in at]),
+    }
+    for sensor, frame in tables.items():
+        text(folder / "mav0" / sensor / "data.csv", frame)
     return folder / "mav0"
 
 
-@log("TUM VI, its text for DSO: names with dots and a unit of the time alone", "--gyro-unit rad/s")
-def tum_vi(folder: Path, world: World) -> Path:
-    head = "# timestamp[ns] w.x w.y w.z a.x a.y a.z\n"
-    frame = table("t,a,b,c,d,e,f", _ns(world), world.rad, world.mps2)
-    return text(folder / "imu.txt", frame, head, sep=" ", header=False)
+log.csv("TUM VI, its text for DSO: names with dots and a unit of the time alone",
+    lambda w: table("t,{abcdef}", w.ns, w.rad, w.mps2), "# timestamp[ns] w.x w.y w.z a.x a.y a.z\n",
+    name="imu.txt", words="--gyro-unit rad/s", sep=" ", header=False)
 
 
 @log("KITTI's oxts: a file of thirty numbers for each sample")
@@ -152,204 +126,136 @@ def kitti(folder: Path, world: World) -> Path:
     for at in range(0, 300):
         row = [49.0, 8.4, 112.8, *world.mps2[at], *world.mps2[at], *world.rad[at], *world.rad[at]]
         (data / f"{at:010d}.txt").write_text(" ".join(f"{value:.12g}" for value in row) + " 4 11\n")
-    said = _at(world)[:300].strftime("%Y-%m-%d %H:%M:%S.%f000")
+    said = world.dates(f"{_DATE}000", 9)[:300]
     (folder / "oxts" / "timestamps.txt").write_text("\n".join(said) + "\n")
     return folder / "oxts"
 
 
-@log("OpenSense, .sto of orientations")
-def opensense(folder: Path, world: World) -> Path:
-    head = "DataRate=100.000000\nDataType=Quaternion\nversion=3\nOpenSimVersion=4.1\nendheader\n"
-    cells = [f"{x:.6f},{y:.6f},{z:.6f},0.5" for x, y, z in world.g / 2]
-    frame = table("time,pelvis_imu,tibia_r_imu,femur_r_imu", world.t_s, cells, cells, cells)
-    return text(folder / "in.sto", frame, head, sep="\t", quoting=3)
+_OPENSENSE = "DataRate=100.000000\nDataType={}\nversion=3\nOpenSimVersion=4.1\nendheader\n"
 
 
-@log("OpenSense, .sto of rates: three numbers in a cell")
-def opensense_rates(folder: Path, world: World) -> Path:
-    head = "DataRate=100.000000\nDataType=Vec3\nversion=3\nOpenSimVersion=4.1\nendheader\n"
-    cells = [f"{x:.8f},{y:.8f},{z:.8f}" for x, y, z in world.rad]
-    frame = table("time,pelvis_imu", world.t_s, cells)
-    return text(folder / "angular_velocities.sto", frame, head, sep="\t", quoting=3)
+def _cells(line: str, rows: np.ndarray) -> list[str]:
+    """Three numbers in a cell."""
+    return [line.format(*row) for row in rows]
 
 
-@log("ArduPilot, DataFlash as Mission Planner's text")
-def dataflash_text(folder: Path, world: World) -> Path:
-    names = "TimeUS,I,GyrX,GyrY,GyrZ,AccX,AccY,AccZ,EG,EA,T,GH,AH,GHz,AHz"
+log.csv("OpenSense, .sto of orientations",
+    lambda w: table("time,pelvis_imu,tibia_r_imu,femur_r_imu", w.t_s,
+        *[_cells("{:.6f},{:.6f},{:.6f},0.5", w.g / 2)] * 3),
+    _OPENSENSE.format("Quaternion"), name="in.sto", sep="\t", quoting=3)
+log.csv("OpenSense, .sto of rates: three numbers in a cell",
+    lambda w: table("time,pelvis_imu", w.t_s, _cells("{:.8f},{:.8f},{:.8f}", w.rad)),
+    _OPENSENSE.format("Vec3"), name="angular_velocities.sto", sep="\t", quoting=3)
+
+
+def _dataflash_text(world: World) -> str:
     head = "FMT, 128, 89, FMT, BBnNZ, Type,Length,Name,Format,Columns\n"
-    head += f"FMT, 163, 57, IMU, QBffffffIIfBBHH, {names}\n"
-    at_us = np.rint(world.t_s * 1e6).astype(np.int64) + 10**8
+    head += "FMT, 163, 57, IMU, QBffffffIIfBBHH, "
+    head += "TimeUS,I,GyrX,GyrY,GyrZ,AccX,AccY,AccZ,EG,EA,T,GH,AH,GHz,AHz\n"
     rows = (
-        f"IMU, {at}, 0, "
-        + ", ".join(f"{v:.9g}" for v in (*r, *f))
-        + f", 0, 0, {w:.4f}, 1, 1, 100, 100\n"
-        for at, r, f, w in zip(at_us, world.rad, world.mps2, world.degc)
+        f"IMU, {at}, 0, {', '.join(f'{v:.9g}' for v in (*r, *f))}, 0, 0, {t:.4f}, 1, 1, 100, 100\n"
+        for at, r, f, t in zip(world.whole(1e6, _BOOTED_US), world.rad, world.mps2, world.degc)
     )
-    (folder / "in.log").write_text(head + "".join(rows))
-    return folder / "in.log"
+    return head + "".join(rows)
 
 
-@log("PX4, vehicle_angular_velocity by ulog2csv: xyz[0]", "--gyro-unit rad/s")
-def px4_xyz(folder: Path, world: World) -> Path:
-    at = np.rint(world.t_s * 1e6).astype(np.int64) + 10**8
-    names = ["timestamp", "timestamp_sample", *(f"xyz[{i}]" for i in range(3))]
-    names += [f"xyz_derivative[{i}]" for i in range(3)]
-    frame = table(names, at, at - 200, world.rad, np.gradient(world.rad, axis=0) * 100)
-    return text(folder / "log_vehicle_angular_velocity_0.csv", frame)
+log.text("ArduPilot, DataFlash as Mission Planner's text", _dataflash_text, "in.log")
+log.csv("PX4, vehicle_angular_velocity by ulog2csv: xyz[0]",
+    lambda w: table("timestamp,timestamp_sample,xyz[{012}],xyz_derivative[{012}]",
+        at := w.whole(1e6, _BOOTED_US), at - 200, w.rad, np.gradient(w.rad, axis=0) * 100),
+    name="log_vehicle_angular_velocity_0.csv", words="--gyro-unit rad/s")
+log.csv("PX4, vehicle_imu by ulog2csv: angles, not rates",
+    lambda w: table("timestamp,accel_device_id,delta_angle[{012}],delta_velocity[{012}],"
+        "delta_angle_dt,delta_velocity_dt", w.whole(1e6, _BOOTED_US), w.each(10_000), w.rad / 100,
+        w.mps2 / 100, w.each(10_000), w.each(10_000)), name="log_vehicle_imu_0.csv")
+log.csv("Betaflight 4.5: unfiltered rates beside the filtered ones, counts of 2048 a g",
+    lambda w: table("loopIteration,time,gyroADC[{012}],gyroUnfilt[{012}],accSmooth[{012}]", w.count,
+        w.whole(1e6, _BOOTED_US), pd.DataFrame(w.dps).rolling(5, min_periods=1).mean().to_numpy(),
+        w.dps, np.rint(w.g * 2048).astype(int)),
+    '"Product","Blackbox flight data recorder by Nicholas Sherlock"\n"acc_1G","2048"\n',
+    words="--accel-unit lsb --accel-lsb-per-g 2048")
 
 
-@log("PX4, vehicle_imu by ulog2csv: angles, not rates")
-def px4_angles(folder: Path, world: World) -> Path:
-    at = np.rint(world.t_s * 1e6).astype(np.int64) + 10**8
-    names = ["timestamp", "accel_device_id", *(f"delta_angle[{i}]" for i in range(3))]
-    names += [*(f"delta_velocity[{i}]" for i in range(3)), "delta_angle_dt", "delta_velocity_dt"]
-    dt = np.full(world.samples, 10_000)
-    frame = table(names, at, dt, world.rad / 100, world.mps2 / 100, dt, dt)
-    return text(folder / "log_vehicle_imu_0.csv", frame)
+def _monitored(world: World, line: str) -> list[str]:
+    """A clock before each line of an Arduino."""
+    said = world.dates("%H:%M:%S.%f", 3)
+    return [f"{t} -> {line.format(*rates)}" for t, rates in zip(said, world.dps)]
 
 
-@log("Betaflight 4.5: unfiltered rates beside the filtered ones, counts of 2048 a g",
-     "--accel-unit lsb --accel-lsb-per-g 2048")  # fmt: skip
-def betaflight(folder: Path, world: World) -> Path:
-    names = ["loopIteration", "time", *(f"gyroADC[{i}]" for i in range(3))]
-    names += [f"gyroUnfilt[{i}]" for i in range(3)] + [f"accSmooth[{i}]" for i in range(3)]
-    before = '"Product","Blackbox flight data recorder by Nicholas Sherlock"\n"acc_1G","2048"\n'
-    at = np.rint(world.t_s * 1e6).astype(np.int64) + 10**8
-    force = np.rint(world.g * 2048).astype(int)
-    count = np.arange(world.samples)
-    smooth = pd.DataFrame(world.dps).rolling(5, min_periods=1).mean().to_numpy()
-    return text(folder / "in.csv", table(names, count, at, smooth, world.dps, force), before)
+log.text("Arduino's serial monitor: a clock and an arrow before each line",
+    lambda w: "\n".join([_monitored(w, "gx_dps,gy_dps,gz_dps")[0],
+        *_monitored(w, "{:.4f},{:.4f},{:.4f}"), ""]))
+log.text("Arduino's serial monitor: a clock, an arrow, tabs and no names",
+    lambda w: "\r\n".join([*_monitored(w, "{:.4f}\t{:.4f}\t{:.4f}"), ""]))
+log.csv("PuTTY's log of a sketch that prints names and rows",
+    lambda w: table("millis,g{xyz}_dps", w.whole(1e3, 812), w.dps),
+    "=~=~=~=~=~=~= PuTTY log 2026.05.01 14:17:54 =~=~=~=~=~=~=\nstarting...\n", name="putty.log",
+    lineterminator="\r\n")
 
 
-@log("Arduino's serial monitor: a clock and an arrow before each line")
-def serial_monitor(folder: Path, world: World) -> Path:
-    said = _at(world).strftime("%H:%M:%S.%f").str[:-3]
-    rows = (f"{t} -> {x:.4f},{y:.4f},{z:.4f}\n" for t, (x, y, z) in zip(said, world.dps))
-    (folder / "in.txt").write_text(f"{said[0]} -> gx_dps,gy_dps,gz_dps\n" + "".join(rows))
-    return folder / "in.txt"
-
-
-@log("Arduino's serial monitor: a clock, an arrow, tabs and no names")
-def serial_monitor_tabs(folder: Path, world: World) -> Path:
-    said = _at(world).strftime("%H:%M:%S.%f").str[:-3]
-    rows = (f"{t} -> {x:.4f}\t{y:.4f}\t{z:.4f}\r\n" for t, (x, y, z) in zip(said, world.dps))
-    (folder / "in.txt").write_text("".join(rows))
-    return folder / "in.txt"
-
-
-@log("PuTTY's log of a sketch that prints names and rows")
-def putty(folder: Path, world: World) -> Path:
-    before = "=~=~=~=~=~=~= PuTTY log 2026.05.01 14:17:54 =~=~=~=~=~=~=\nstarting...\n"
-    names = "millis,gx_dps,gy_dps,gz_dps"
-    frame = table(names, np.rint(world.t_s * 1e3).astype(int) + 812, world.dps)
-    return text(folder / "putty.log", frame, before, lineterminator="\r\n")
-
-
-@log("InfluxDB's annotated CSV: a field on each row")
-def influx(folder: Path, world: World) -> Path:
-    before = "#group,false,false,false,false,true\n"
-    before += "#datatype,string,long,dateTime:RFC3339,double,string\n"
-    said = _at(world).strftime("%Y-%m-%dT%H:%M:%S.%fZ")
-    parts = [
-        table(",result,table,_time,_value,_field".split(",")[1:], np.full(world.samples, ""),
-              np.full(world.samples, number), said, world.dps[:, number],
-              np.full(world.samples, f"gyro_{axis}"))
-        for number, axis in enumerate("xyz")
-    ]  # fmt: skip
-    return text(folder / "in.csv", pd.concat(parts), before)
-
-
-@log("Grafana's CSV: a unit in each cell")
-def grafana(folder: Path, world: World) -> Path:
-    said = _at(world).strftime("%Y-%m-%d %H:%M:%S.%f").str[:-3]
-    cells = [[f"{value:.4f} °/s" for value in row] for row in world.dps]
-    frame = table(["Time", *_axes("gyro {}")], said, np.array(cells))
-    return text(folder / "in.csv", frame, quoting=1)
-
-
-@log("ST's Unicleo: mg and mdps")
-def unicleo(folder: Path, world: World) -> Path:
-    before = "STMicroelectronics Unicleo-GUI\nODR 100 Hz\n\n"
-    names = ["Time [us]", *_axes("A_{} [mg]", "XYZ"), *_axes("G_{} [mdps]", "XYZ"), "T [°C]"]
-    at = np.rint(world.t_s * 1e6).astype(np.int64)
-    frame = table(names, at, world.g * 1e3, world.dps * 1e3, world.degc)
-    return text(folder / "in.txt", frame, before, sep="\t")
-
-
-@log("ST BLE Sensor, its file of rates")
-def st_ble(folder: Path, world: World) -> Path:
-    before = "Log start on,2026-05-01 14:17:54\nFeature,Gyroscope\nNodes,SensorTile @C0821A\n"
-    names = ["Date", "HostTimestamp", "NodeName", "NodeTimestamp", "RawData"]
-    names += [*_axes("{} (dps)", "XYZ"), ""]
-    said = _at(world).strftime("%d-%b-%y %H:%M:%S.%f").str[:-3]
-    at_ms = np.rint(world.t_s * 1e3).astype(int)
-    node = np.full(world.samples, "SensorTile @C0821A")
-    raw, end = np.full(world.samples, "0A0B0C0D"), np.full(world.samples, "")
-    frame = table(names, said, at_ms, node, at_ms + 7000, raw, world.dps, end)
-    return text(folder / "20260501_141754_Gyroscope.csv", frame, before)
-
-
-@log("GoPro's telemetry: columns called 1 and 2", "--gyro-unit rad/s")
-def gopro(folder: Path, world: World) -> Path:
-    names = ["cts", "date", "Gyroscope (x,y,z) [rad/s]", "1", "2"]
-    said = _at(world).strftime("%Y-%m-%dT%H:%M:%S.%f").str[:-3] + "Z"
-    return text(folder / "GX010042-GYRO.csv", table(names, world.t_s * 1e3, said, world.rad))
-
-
-@log("LP-Research's LPMS: a sensor's number and a frame's")
-def lpms(folder: Path, world: World) -> Path:
-    names = ["SensorId", " TimeStamp (s)", " FrameNumber", *_axes(" Acc{} (g)", "XYZ")]
-    names += [
-        *_axes(" Gyro{} (deg/s)", "XYZ"),
-        *_axes(" Mag{} (uT)", "XYZ"),
-        *_axes(" Q{}", "WXYZ"),
+def _influx(world: World) -> pd.DataFrame:
+    said = world.dates("%Y-%m-%dT%H:%M:%S.%fZ", 6)
+    rows = [
+        (world.each(""), world.each(n), said, world.dps[:, n], world.each(f"gyro_{axis}"))
+        for n, axis in enumerate("xyz")
     ]
-    one = np.ones(world.samples, int)
-    turned = np.tile([1.0, 0.0, 0.0, 0.0], (world.samples, 1))
-    frame = table(names, one, world.t_s, one.cumsum(), world.g, world.dps, 40 * world.g, turned)
-    return text(folder / "in.csv", frame)
+    return pd.concat([table("result,table,_time,_value,_field", *of) for of in rows])
 
 
-@log("Inertial Sense: pqr[0] and acc[0]", "--gyro-unit rad/s --accel-unit m/s2 --time-unit s")
-def inertial_sense(folder: Path, world: World) -> Path:
-    names = ["time", *(f"pqr[{i}]" for i in range(3)), *(f"acc[{i}]" for i in range(3)), "status"]
-    none = np.zeros(world.samples, int)
-    return text(
-        folder / "LOG_SN30013_imu.csv", table(names, world.t_s, world.rad, world.mps2, none)
-    )
-
-
-@log("x-io's x-IMU3")
-def x_imu3(folder: Path, world: World) -> Path:
-    names = ["Timestamp (us)", *_axes("Gyroscope {} (deg/s)", "XYZ")]
-    names += _axes("Accelerometer {} (g)", "XYZ")
-    at = np.rint(world.t_s * 1e6).astype(np.int64) + 8 * 10**6
-    return text(folder / "Inertial.csv", table(names, at, world.dps, world.g))
+log.csv("InfluxDB's annotated CSV: a field on each row",
+    _influx,
+    "#group,false,false,false,false,true\n#datatype,string,long,dateTime:RFC3339,double,string\n")
+log.csv("Grafana's CSV: a unit in each cell",
+    lambda w: table("Time,gyro {xyz}", w.dates(_DATE, 3),
+        np.array([[f"{value:.4f} °/s" for value in row] for row in w.dps])), quoting=1)
+log.csv("ST's Unicleo: mg and mdps",
+    lambda w: table("Time [us],A_{XYZ} [mg],G_{XYZ} [mdps],T [°C]", w.whole(1e6), w.g * 1e3,
+        w.dps * 1e3, w.degc), "STMicroelectronics Unicleo-GUI\nODR 100 Hz\n\n", name="in.txt",
+    sep="\t")
+log.csv("ST BLE Sensor, its file of rates",
+    lambda w: table("Date,HostTimestamp,NodeName,NodeTimestamp,RawData,{XYZ} (dps),",
+        w.dates("%d-%b-%y %H:%M:%S.%f", 3), w.whole(1e3), w.each("SensorTile @C0821A"),
+        w.whole(1e3, 7000), w.each("0A0B0C0D"), w.dps, w.each("")),
+    "Log start on,2026-05-01 14:17:54\nFeature,Gyroscope\nNodes,SensorTile @C0821A\n",
+    name="20260501_141754_Gyroscope.csv")
+log.csv("GoPro's telemetry: columns called 1 and 2",
+    lambda w: table(["cts", "date", "Gyroscope (x,y,z) [rad/s]", "1", "2"], w.t_s * 1e3,
+        w.dates("%Y-%m-%dT%H:%M:%S.%f", 3) + "Z", w.rad), name="GX010042-GYRO.csv",
+    words="--gyro-unit rad/s")
+log.csv("LP-Research's LPMS: a sensor's number and a frame's",
+    lambda w: table("SensorId, TimeStamp (s), FrameNumber, Acc{XYZ} (g), Gyro{XYZ} (deg/s),"
+        " Mag{XYZ} (uT), Q{WXYZ}", w.each(1), w.t_s, w.count + 1, w.g, w.dps, 40 * w.g,
+        w.each([1.0, 0.0, 0.0, 0.0])))
+log.csv("Inertial Sense: pqr[0] and acc[0]",
+    lambda w: table("time,pqr[{012}],acc[{012}],status", w.t_s, w.rad, w.mps2, w.each(0)),
+    name="LOG_SN30013_imu.csv", words="--gyro-unit rad/s --accel-unit m/s2 --time-unit s")
+log.csv("x-io's x-IMU3",
+    lambda w: table("Timestamp (us),Gyroscope {XYZ} (deg/s),Accelerometer {XYZ} (g)",
+        w.whole(1e6, 8 * 10**6), w.dps, w.g), name="Inertial.csv")
 
 
 @log("phyphox: rates and acceleration in one zip, of which one table ends sooner", least=0.7)
 def phyphox_shorter(folder: Path, world: World) -> Path:
-    rates = table(["Time (s)", *_axes("Gyroscope {} (rad/s)")], world.t_s, world.rad)
-    force = table(["Time (s)", *_axes("Acceleration {} (m/s^2)")], world.t_s, world.mps2)
-    files = [text(folder / "in" / "Gyroscope.csv", rates)]
-    files.append(text(folder / "in" / "Accelerometer.csv", force[:2400]))
+    rates = table("Time (s),Gyroscope {xyz} (rad/s)", world.t_s, world.rad)
+    force = table("Time (s),Acceleration {xyz} (m/s^2)", world.t_s, world.mps2)
+    files = [
+        text(folder / "in" / "Gyroscope.csv", rates),
+        text(folder / "in" / "Accelerometer.csv", force[:2400]),
+    ]
     return zipped(folder / "in.zip", files, folder / "in")
 
 
-@log("a phone's JSON of two lists, {gyroscope: [], accelerometer: []}", "--time-unit ms")
-def json_of_lists(folder: Path, world: World) -> Path:
-    at = (_ns(world) // 10**6).tolist()
-
-    def of(values: np.ndarray) -> list[dict]:
-        return [{"timestamp": t, **dict(zip("xyz", v.tolist()))} for t, v in zip(at, values)]
-
-    content = {"accelerometer": of(world.mps2), "gyroscope": of(world.rad)}
-    (folder / "in.json").write_text(json.dumps(content))
-    return folder / "in.json"
+def _lists_of_two(world: World) -> str:
+    of = {"accelerometer": world.mps2, "gyroscope": world.rad}
+    at = (world.ns // 10**6).tolist()
+    said = {
+        name: [{"timestamp": t, **dict(zip("xyz", v))} for t, v in zip(at, values.tolist())]
+        for name, values in of.items()
+    }
+    return json.dumps(said)
 
 
-@log("iNav and Android mix: gravity taken away, and no word of it")
-def free_force_unnamed(folder: Path, world: World) -> Path:
-    free = world.mps2 - [0, 0, STANDARD_GRAVITY]
-    names = ["t_s", *_axes("g{}_dps"), *_axes("a{}_m/s2")]
-    return text(folder / "in.csv", table(names, world.t_s, world.dps, free))
+log.text("a phone's JSON of two lists, {gyroscope: [], accelerometer: []}",
+    _lists_of_two, "in.json", words="--time-unit ms")
+log.csv("iNav and Android mix: gravity taken away, and no word of it",
+    lambda w: table("t_s,g{xyz}_dps,a{xyz}_m/s2", w.t_s, w.dps, w.mps2 - [0, 0, STANDARD_GRAVITY]))

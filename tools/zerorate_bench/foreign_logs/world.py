@@ -1,15 +1,23 @@
 """What a sensor saw for half a minute: the truth that every log of the corpus holds."""
 
+import re
+import zipfile
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
 STANDARD_GRAVITY = 9.80665
+AFTERNOON = "2026-05-01T14:17:54.120"
+#: Nanoseconds since 1970.
+EPOCH_NS = 1_700_000_000_000_000_000
 BIAS_DPS = (0.8, -0.5, 0.3)
+#: Columns of `plain`.
+RATES, FORCES = ["gx_dps", "gy_dps", "gz_dps"], ["ax_g", "ay_g", "az_g"]
 _NOISE_DPS, _NOISE_G = 0.05, 0.004
 _FASTEST_DPS = 40.0
 
@@ -60,9 +68,36 @@ class World:
     def mps2(self) -> np.ndarray:
         return self.g * STANDARD_GRAVITY
 
+    @property
+    def mps2_without_gravity(self) -> np.ndarray:
+        return self.mps2 - [0, 0, STANDARD_GRAVITY]
+
     def counts(self, gyro: float = 131.0, accel: float = 16384.0) -> tuple[np.ndarray, np.ndarray]:
         """Rates and forces as whole counts of so many a deg/s and a g."""
         return np.rint(self.dps * gyro).astype(int), np.rint(self.g * accel).astype(int)
+
+    @property
+    def ns(self) -> np.ndarray:
+        """Nanoseconds since 1970."""
+        return self.whole(1e9, EPOCH_NS)
+
+    def whole(self, a_second: float, start: int = 0) -> np.ndarray:
+        """Times in whole parts of a second from `start` on."""
+        return np.rint(self.t_s * a_second).astype(np.int64) + start
+
+    def dates(self, form: str, digits: int = 6, start: str = AFTERNOON) -> pd.Index:
+        """As strftime writes them; digits: so many of a second's fraction, which ends them."""
+        said = (pd.Timestamp(start) + pd.to_timedelta(self.t_s, unit="s")).strftime(form)
+        return said.str[: len(said[0]) + digits - 6]
+
+    def each(self, value: Any) -> np.ndarray:
+        """The same in every row."""
+        return np.tile(value, (self.samples, 1)) if np.ndim(value) else np.full(self.samples, value)
+
+    @property
+    def count(self) -> np.ndarray:
+        """Numbers of the rows from 0 on."""
+        return np.arange(self.samples)
 
 
 #: Takes a folder and a world, writes a log of it there, and returns the log's path.
@@ -85,27 +120,95 @@ class Log:
 CORPUS: list[Log] = []
 
 
-def log(what: str, words: str = "", least: float = 0.98, most: float = 1.0):
-    """Register a writer of a log."""
+class Logs:
+    """Registers the logs of a module; `known`: fields of Log, each method returns the writer."""
 
-    def add(write: Writer) -> Writer:
-        CORPUS.append(Log(what, write, words, least, most))
-        return write
+    def __init__(self, module: str) -> None:
+        self._module = module
 
-    return add
+    def __call__(self, what: str, **known: Any) -> Callable[[Writer], Writer]:
+        """Register a writer."""
+
+        def add(write: Writer) -> Writer:
+            CORPUS.append(Log(what, write, **known))
+            return write
+
+        return add
+
+    def file(
+        self, what: str, name: str, fill: Callable[[Path, World], object], **known: Any
+    ) -> Writer:
+        """Register a log of one file, which `fill` writes."""
+
+        def write(folder: Path, world: World) -> Path:
+            fill(folder / name, world)
+            return folder / name
+
+        write.__module__ = self._module
+        return self(what, **known)(write)
+
+    def text(
+        self, what: str, content: Callable[[World], str], name: str = "in.txt", **known: Any
+    ) -> Writer:
+        """Register a log of one file of text."""
+        return self.file(what, name, lambda path, w: path.write_text(content(w), "utf-8"), **known)
+
+    def csv(
+        self, what: str, frame: Callable[[World], pd.DataFrame], before: str = "", **more: Any
+    ) -> Writer:
+        """Register a table, after lines of other things. more: fields of Log, the file's name, and
+        what pandas takes."""
+        known = {name: more.pop(name) for name in ("words", "least", "most") if name in more}
+        name = more.pop("name", "in.csv")
+        return self.text(what, lambda w: before + csv(frame(w), **more), name, **known)
 
 
-def table(names: Sequence[str] | str, *columns) -> pd.DataFrame:
-    """Columns side by side; an (n, 3) one is three. names: a comma parts them."""
+def table(names: Sequence[str] | str, *columns: Any) -> pd.DataFrame:
+    """Columns side by side; an (n, 3) one is three. names: a comma parts them, and a letter in
+    braces stands for itself: `g{xyz}` is gx, gy and gz."""
     names = names.split(",") if isinstance(names, str) else names
     flat = [np.asarray(c) for c in columns]
     flat = [part for c in flat for part in (c.T if c.ndim == 2 else [c])]
-    return pd.DataFrame(dict(enumerate(flat))).set_axis(names, axis=1)
+    return pd.DataFrame(dict(enumerate(flat))).set_axis(spelled(names), axis=1)
 
 
-def text(path: Path, frame: pd.DataFrame, before: str = "", **how) -> Path:
-    """A frame as a CSV, after lines of other things."""
+def spelled(names: Sequence[str]) -> list[str]:
+    """Names, each with braces once for each letter in them."""
+    parts = [re.fullmatch(r"(.*?)(?:\{(\w+)\}(.*))?", name, re.DOTALL) for name in names]
+    return [
+        f"{part[1]}{letter}{part[3] or ''}" for part in parts if part for letter in part[2] or [""]
+    ]
+
+
+def plain(world: World, name: str = "t_s", at: Any = None) -> pd.DataFrame:
+    """The world's columns beside its time, or a time by another name."""
+    names = f"{name},g{{xyz}}_dps,a{{xyz}}_g,temp_c"
+    return table(names, world.t_s if at is None else at, world.dps, world.g, world.degc)
+
+
+def emptied(frame: pd.DataFrame, rows: Any, names: list[str]) -> pd.DataFrame:
+    """The same without numbers in some columns of some rows."""
+    frame.iloc[rows, [*map(frame.columns.get_loc, names)]] = np.nan
+    return frame
+
+
+def csv(frame: pd.DataFrame, **how: Any) -> str:
+    """A frame as a CSV. how: as pandas takes it."""
+    return str(
+        frame.to_csv(**{"index": False, "float_format": "%.15g", "lineterminator": "\n", **how})
+    )
+
+
+def text(path: Path, frame: pd.DataFrame, before: str = "", **how: Any) -> Path:
+    """Write a frame as a CSV, after lines of other things."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    how = {"index": False, "float_format": "%.15g", "lineterminator": "\n", **how}
-    path.write_text(before + frame.to_csv(**how), encoding="utf-8")
+    path.write_text(before + csv(frame, **how), encoding="utf-8")
+    return path
+
+
+def zipped(path: Path, files: list[Path], root: Path) -> Path:
+    """Files as one archive."""
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        for file in files:
+            archive.write(file, file.relative_to(root))
     return path
