@@ -7,11 +7,8 @@ that they offer must be the right one.
 
 import contextlib
 import io
-import os
 import re
 import shlex
-import subprocess
-import sys
 import tempfile
 from collections.abc import Callable
 from dataclasses import replace
@@ -23,6 +20,7 @@ from zerorate_tools.cli import main
 from zerorate_tools.errors import ZerorateError
 from zerorate_tools.recordings import Recording, read_recording
 
+from .children import in_child
 from .foreign_logs import CORPUS, Log, World
 from .resampled import false_alarms
 from .tables import table
@@ -71,14 +69,10 @@ _HZ = 100
 _DIGITS = 8
 _BIAS_DPS, _NOISE_DPS, _NOISE_G = (0.3, -0.2, 0.1), 0.05, 0.002
 _TIMED = """
-import resource, sys, time
 from zerorate_tools.importers import import_recording
 start = time.monotonic()
 report = import_recording(*sys.argv[1:])
-used = resource.getrusage(resource.RUSAGE_SELF)
-unit = 1 if sys.platform == "darwin" else 1024
-print(report.rows_written, time.monotonic() - start, used.ru_utime + used.ru_stime,
-      used.ru_maxrss * unit)
+print(json.dumps([report.rows_written, time.monotonic() - start, *spent()]))
 """
 
 
@@ -236,11 +230,7 @@ def run_import_size(
         source, out = Path(scratch) / "large.csv", Path(scratch) / "large.parquet"
         rows = write_large(source, gigabytes)
         advance(1)
-        command = [sys.executable, "-c", _TIMED, str(source), str(out)]
-        done = subprocess.run(command, capture_output=True, text=True, env=dict(os.environ))
-        if done.returncode:
-            raise ZerorateError(f"the import failed: {done.stderr.strip()[-300:]}")
-        written, seconds, cpu_s, peak_bytes = map(float, done.stdout.split())
+        written, seconds, cpu_s, peak_bytes = in_child(_TIMED, source, out)
         if written != rows:
             raise ZerorateError(f"{written:.0f} of {rows} rows were imported")
         size_gb = source.stat().st_size / 1e9

@@ -1,15 +1,12 @@
 """What closing recordings in motion costs: six of three minutes, and one of eight hours."""
 
-import json
-import subprocess
-import sys
 from dataclasses import dataclass
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import numpy as np
 from zerorate_tools.recordings.writing import write_recording
 
+from .children import close_cost
 from .tables import table
 
 _HOUR_S = 3600.0
@@ -31,15 +28,6 @@ class Size:
 
 
 SIZES = (Size(6, 180.0, 286.0, 0.2, 15.0, 1.0), Size(1, 8 * _HOUR_S, 100.0, 0.5, 60.0, 1.0))
-#: Run in a process of its own: its own peak, and that of no other, is then told.
-_CLOSE = """
-import json, re, sys, time
-from pathlib import Path
-from zerorate_tools.cli import main
-code = main(sys.argv[1:])
-peak = re.search(r"VmHWM:\\s+(\\d+)", Path("/proc/self/status").read_text())
-print(json.dumps([code, time.process_time(), int(peak[1]) / 1e6]))
-"""
 
 
 def run(sizes=SIZES) -> list[dict]:
@@ -60,17 +48,8 @@ def write(size: Size, folder: Path) -> None:
 
 
 def _measured(size: Size) -> dict:
-    with TemporaryDirectory() as scratch:
-        folder = Path(scratch)
-        words = f"from {__name__} import *; write({size!r}, Path({scratch!r}))"
-        subprocess.run([sys.executable, "-c", words], check=True)
-        logs = [str(p) for p in sorted(folder.glob("run-*.parquet"))]
-        close = [sys.executable, "-c", _CLOSE, "close", *logs, "--out", str(folder / "out")]
-        done = subprocess.run(close, capture_output=True, text=True, check=True)
-        code, cpu_s, peak_gb = json.loads(done.stdout.splitlines()[-1])
-        if code:
-            raise RuntimeError(done.stderr[-2000:])
-    return {"size": str(size), "cpu_s": cpu_s, "gb": peak_gb, "limits": [size.most_s, size.most_gb]}
+    cost = close_cost(f"from {__name__} import *\nwrite({size!r}, folder)")
+    return {"size": str(size), "limits": [size.most_s, size.most_gb]} | cost
 
 
 def passed(found: list[dict]) -> bool:

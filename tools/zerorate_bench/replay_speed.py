@@ -1,38 +1,32 @@
 """Samples a second and peak memory of a replay of rests alone, against the recording's length."""
 
-import os
-import subprocess
-import sys
 import tempfile
 from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
 import numpy as np
-from zerorate_tools.errors import ZerorateError
 from zerorate_tools.recordings import Recording
 from zerorate_tools.recordings.writing import recording_writer
 from zerorate_tools.simulate import simulate
+
+from .children import in_child
 
 HOURS = (1.0, 10.0, 100.0)
 _SCENARIO = "warm-up-b"
 _ROWS = 60_000
 RUNS = 3
-_ONE_THREAD = ("OMP_NUM_THREADS", "ARROW_IO_THREADS", "OPENBLAS_NUM_THREADS")
 # a short recording goes before, so that loading the compiled kernels is not in the time
 _REPLAY = """
-import resource, sys, time
 from zerorate_tools.replay import replay
 first, long = sys.argv[1:]
 options = {"motion": False, "gravity": False}
 replay(first, first + ".out.parquet", options=options)
 start = time.process_time()
 samples = replay(long, long + ".out.parquet", options=options).samples
-spent = time.process_time() - start
-print(samples, spent, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024)
+print(json.dumps([samples, time.process_time() - start, spent()[1]]))
 """
 _KERNELS = """
-import sys, time
 from zerorate_tools.recordings import open_recording
 from zerorate_tools.replay.engines import engine
 from zerorate_tools.replay.replaying import corrector_for
@@ -41,13 +35,13 @@ first, long = map(open_recording, sys.argv[1:])
 rests = {"motion": False, "gravity": False}
 corrector, native = corrector_for(first, rests), engine("native")
 list(native.run(corrector, frames_in_batches(first)))
-batches, samples, spent = frames_in_batches(long), 0, 0.0
+batches, samples, took = frames_in_batches(long), 0, 0.0
 for batch in batches:
     start = time.process_time()
     list(native.run(corrector, [batch]))
-    spent += time.process_time() - start
+    took += time.process_time() - start
     samples += len(batch)
-print(samples, spent, 0)
+print(json.dumps([samples, took, 0]))
 """
 
 
@@ -85,8 +79,12 @@ def _warm_up() -> Recording:
 
 def _one(path: Path, first: Path, hours: float, count: int) -> dict[str, float]:
     write_long(path, hours)
-    runs = [_measured(_REPLAY, first, path) for _ in range(count)]
-    kernels = [_measured(_KERNELS, first, path) for _ in range(count)] if hours <= 1 else []
+    runs = [in_child(_REPLAY, first, path, one_thread=True) for _ in range(count)]
+    kernels = (
+        [in_child(_KERNELS, first, path, one_thread=True) for _ in range(count)]
+        if hours <= 1
+        else []
+    )
     found = {
         "samples_per_s": max(samples / seconds for samples, seconds, _ in runs),
         "peak_bytes": max(peak for _, _, peak in runs),
@@ -94,13 +92,3 @@ def _one(path: Path, first: Path, hours: float, count: int) -> dict[str, float]:
     if kernels:
         found["kernel_samples_per_s"] = max(n / seconds for n, seconds, _ in kernels)
     return found
-
-
-def _measured(script: str, *paths: Path) -> tuple[float, float, float]:
-    command = [sys.executable, "-c", script, *map(str, paths)]
-    environment = {**os.environ, **dict.fromkeys(_ONE_THREAD, "1")}
-    done = subprocess.run(command, capture_output=True, text=True, env=environment)
-    if done.returncode:
-        raise ZerorateError(f"the replay failed: {done.stderr.strip()[-300:]}")
-    samples, seconds, peak = map(float, done.stdout.split())
-    return samples, seconds, peak

@@ -1,12 +1,7 @@
 """The whole benchmark of the loop, which can be broken off and taken up again, with its size."""
 
-import json
 import os
-import resource
-import subprocess
-import sys
 import tempfile
-import time
 from collections.abc import Callable, Iterator
 from itertools import product
 from os import PathLike
@@ -17,6 +12,7 @@ from zerorate_tools.loop.read.still import still_ticks
 from zerorate_tools.loop.read.ticks import read_ticks
 from zerorate_tools.recordings import Recording, Scales, write_recording
 
+from ..children import close_cost
 from ..public_data import data_folder
 from ..tables import machine, machine_line, outcomes, table
 from .devices import Device, devices
@@ -39,6 +35,10 @@ _DEVICE = {
     },
     "effect": [{"kind": "sensor-lag", "tau_s": 120.0, "rms_dps": 0.01}],
 }
+_WRITE = f"""
+from zerorate_tools.simulate import simulate_to_files
+simulate_to_files({_DEVICE!r}, folder / "large.parquet")
+"""
 RATES_HZ = (1 / 15, 1.0, 2.0, 4.0, 5.0, 10.0)
 NOISES_DPS = (0.05, 0.35, 1.0)
 _LONG_S, _TURN_S, _TURN_DPS = 9000.0, (4000.0, 4300.0), 3.0
@@ -49,51 +49,13 @@ _BESIDE_S = 500.0
 _MOST_EXAMPLES = 20
 
 
-def write_device(folder: Path) -> list[Path]:
-    """The device's recordings, a session a file."""
-    from zerorate_tools.simulate import simulate_to_files
-
-    return simulate_to_files(_DEVICE, folder / "large.parquet")
-
-
-def measured() -> dict:
-    """Seconds by the clock and of the processor, GB at the most, of `zerorate close`."""
-    with tempfile.TemporaryDirectory() as scratch:
-        folder = Path(scratch)
-        # in a process of its own, whose memory is not counted
-        writes = f"from {__name__} import write_device; from pathlib import Path; "
-        writes += f"write_device(Path({scratch!r}))"
-        subprocess.run([sys.executable, "-c", writes], check=True)
-        logs = sorted(str(p) for p in folder.glob("large-*.parquet"))
-        close = ["close", *logs, "--out", str(folder / "out")]
-        return _run([sys.executable, "-m", "zerorate_tools.cli", *close], folder / "out")
-
-
-def _run(command: list[str], out: Path) -> dict:
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    began = time.monotonic()
-    done = subprocess.run(command, capture_output=True, check=False)
-    seconds = time.monotonic() - began
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    if done.returncode:
-        raise RuntimeError(done.stderr.decode(errors="replace")[-2000:])
-    report = json.loads((out / "report.json").read_text(encoding="utf-8"))
-    return {
-        "seconds": seconds,
-        "cpu_s": after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime,
-        # the largest child so far: writing the recordings may be it, which is then said too high
-        "most_gb": after.ru_maxrss / 1e6,
-        "found": [effect["effect"] for effect in report["effects"]],
-    }
-
-
 def figures_of(size: dict) -> list[Figure]:
     """Time and memory beside their limits."""
     name = f"{SESSIONS} sessions of {HOURS} h at {HZ:g} Hz: "
     return [
         Figure(name + "seconds by the clock", size["seconds"], MOST_S, True, 1, unit="s"),
         Figure(name + "seconds of processor", size["cpu_s"], None, True, 1, unit="s"),
-        Figure(name + "memory", size["most_gb"], MOST_GB, True, 1, unit="GB"),
+        Figure(name + "memory", size["gb"], MOST_GB, True, 1, unit="GB"),
     ]
 
 
@@ -175,7 +137,7 @@ def run(
         seen = list(looked_at(every, processes, Path(resume) if resume else None, advance))
     found = figures(seen, whole=not rows)
     if not rows:
-        found += rest_figures() + (figures_of(measured()) if size else [])
+        found += rest_figures() + (figures_of(close_cost(_WRITE)) if size else [])
     result: dict = {"devices": len(seen), "machine": machine()}
     result["cpu_s_a_device"] = sum(o.cpu_s for o in seen) / max(len(seen), 1)
     if folder and folder.is_dir() and not rows:
