@@ -46,7 +46,7 @@ GOOD = native() | {
 
 
 def met(found, limits=COST):
-    return {verdict.limit.figure: verdict.met for verdict in verdicts(found, limits)}
+    return {verdict["figure"]: verdict["met"] for verdict in verdicts(found, limits)}
 
 
 def test_good_figures_meet_every_limit_of_cost():

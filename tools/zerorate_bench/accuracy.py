@@ -156,12 +156,12 @@ def accuracy(
         "session_2_how": HOW,
         "real_rms_mdps": real(folder, advance) if folder else None,
     }
-    found["limits"] = [verdict.to_json() for verdict in verdicts(found, ACCURACY)]
+    found["limits"] = verdicts(found, ACCURACY)
     return found
 
 
 def in_markdown(found: Mapping[str, Any]) -> str:
-    limits = limits_table(verdicts(found, ACCURACY))
+    limits = limits_table(found["limits"])
     return "\n".join(
         ["# Accuracy\n", _MADE, machine_line(found["machine"]), limits, *sections(found), _MOTION]
     )

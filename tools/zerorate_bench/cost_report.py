@@ -92,7 +92,7 @@ def cost(advance: Callable[[float], None] = lambda n: None, hours=HOURS) -> dict
     found["state_bytes"] = found["state_bytes_by_array"]["state"]
     found["replay_samples_per_s"] = min(one["samples_per_s"] for one in replay.values())
     found["left_out"] = left_out
-    found["limits"] = [verdict.to_json() for verdict in verdicts(found, COST)]
+    found["limits"] = verdicts(found, COST)
     return found
 
 
@@ -109,7 +109,7 @@ def _measures(work: Workload, hours) -> dict[str, Callable[[], Any]]:
 
 
 def in_markdown(found: Mapping[str, Any]) -> str:
-    limits = limits_table(verdicts(found, COST))
+    limits = limits_table(found["limits"])
     return "\n".join(["# Cost\n", _MADE, machine_line(found["machine"]), limits, *sections(found)])
 
 

@@ -1,8 +1,7 @@
 """What the figures of cost and accuracy must be, and whether they are."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -26,35 +25,15 @@ class Limit:
     measured: Callable[[Mapping[str, Any]], float]
     at_least: bool = False
 
-    def verdict(self, found: Mapping[str, Any]) -> Verdict:
-        """This bound beside what was found."""
-        try:
-            return Verdict(self, float(self.measured(found)))
-        except (KeyError, TypeError):
-            return Verdict(self, None)
-
-
-@dataclass(frozen=True)
-class Verdict:
-    """A bound and the figure measured for it, None where it could not be measured."""
-
-    limit: Limit
-    value: float | None
-
-    @property
-    def met(self) -> bool | None:
-        """Whether the bound is kept; None where nothing was measured."""
-        if self.value is None:
-            return None
-        if self.limit.at_least:
-            return self.value >= self.limit.bound
-        return self.value <= self.limit.bound
-
-    def to_json(self) -> dict[str, object]:
-        """figure, measured, at_most or at_least, unit, met."""
-        kind = "at_least" if self.limit.at_least else "at_most"
-        found = {"figure": self.limit.figure, "measured": self.value, kind: self.limit.bound}
-        return {**found, "unit": self.limit.unit, "met": self.met}
+    def verdict(self, found: Mapping[str, Any]) -> dict[str, Any]:
+        """figure, measured, at_most or at_least, unit, met; None where nothing was measured."""
+        value, met = None, None
+        with suppress(KeyError, TypeError):
+            value = float(self.measured(found))
+            met = value >= self.bound if self.at_least else value <= self.bound
+        kind = "at_least" if self.at_least else "at_most"
+        bound = {"figure": self.figure, "measured": value, kind: self.bound}
+        return {**bound, "unit": self.unit, "met": met}
 
 
 def _native(processor: str, how: str, figure: str) -> Callable[[Mapping[str, Any]], float]:
@@ -103,18 +82,24 @@ ACCURACY = tuple(
 )
 
 
-def verdicts(found: Mapping[str, Any], limits: tuple[Limit, ...]) -> list[Verdict]:
-    """Each limit beside its figure."""
+def verdicts(found: Mapping[str, Any], limits: tuple[Limit, ...]) -> list[dict[str, Any]]:
+    """Each limit beside its figure, as `Limit.verdict` has it."""
     return [limit.verdict(found) for limit in limits]
 
 
-def limits_table(found: list[Verdict]) -> str:
+def limits_table(found: list[dict[str, Any]]) -> str:
     """Markdown: figure, measured, bound, met."""
     return table(["figure", "measured", "must be", "met"], [_row(verdict) for verdict in found])
 
 
-def _row(verdict: Verdict) -> list[str]:
-    limit = verdict.limit
-    measured = "not measured" if verdict.value is None else f"{number(verdict.value)} {limit.unit}"
-    bound = f"at {'least' if limit.at_least else 'most'} {limit.bound:,.10g} {limit.unit}"
-    return [limit.figure, measured, bound, {True: "yes", False: "**no**", None: "-"}[verdict.met]]
+def _row(verdict: dict[str, Any]) -> list[str]:
+    value, unit = verdict["measured"], verdict["unit"]
+    measured = "not measured" if value is None else f"{number(value)} {unit}"
+    kind = "at_least" if "at_least" in verdict else "at_most"
+    bound = f"{kind.replace('_', ' ')} {verdict[kind]:,.10g} {unit}"
+    return [
+        verdict["figure"],
+        measured,
+        bound,
+        {True: "yes", False: "**no**", None: "-"}[verdict["met"]],
+    ]

@@ -179,7 +179,7 @@ def measure(advance: Callable[[float], None] = lambda n: None) -> dict[str, Any]
             found["frozen"] = {
                 n: _same(pico, p)[0] for n, p in plays(workload(_FROZEN_ROWS)).items()
             }
-    found["limits"] = [verdict.to_json() for verdict in verdicts(found, LIMITS)]
+    found["limits"] = verdicts(found, LIMITS)
     return found
 
 
@@ -281,7 +281,7 @@ def in_markdown(found: Mapping[str, Any]) -> str:
     ]
     same = table(["mode", "to the last bit as on the host", "frozen into the image"], modes)
     head = f"# {found['board']}\n\nEmulated, with {found['firmware']}.\n"
-    return "\n".join([head, limits_table(verdicts(found, LIMITS)), heap, same])
+    return "\n".join([head, limits_table(found["limits"]), heap, same])
 
 
 def _yes(equal: bool | None) -> str:
