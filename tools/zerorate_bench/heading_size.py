@@ -7,6 +7,7 @@ import numpy as np
 from zerorate_tools.recordings.writing import write_recording
 
 from .children import close_cost
+from .heading_simulated import Case, recorded
 from .tables import table
 
 _HOUR_S = 3600.0
@@ -37,8 +38,6 @@ def run(sizes=SIZES) -> list[dict]:
 
 def write(size: Size, folder: Path) -> None:
     """A device's recordings, all of one matrix."""
-    from .heading_simulated import Case, recorded
-
     for number in range(size.recordings):
         rng = np.random.default_rng(number)
         recording, _, _ = recorded(

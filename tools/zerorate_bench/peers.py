@@ -16,7 +16,9 @@ from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 from scipy.ndimage import median_filter
 from zerorate.effects.model_file import LOADED, REASONS
+from zerorate.gravity.gravity_settings import gravity_settings, gravity_state
 from zerorate.model import EffectModel
+from zerorate.motion.motion_settings import motion_settings, motion_state
 from zerorate_tools.errors import ZerorateError
 from zerorate_tools.kernels.library import address, library
 from zerorate_tools.layout import GRAVITY, MOTION
@@ -137,14 +139,10 @@ class Source:
         scales = one.recording.scales
         sensor = (scales.odr_hz, scales.gyro_lsb_per_dps, scales.accel_lsb_per_g)
         if self.name == "in_motion":
-            from zerorate.motion.motion_settings import motion_settings, motion_state
-
             degree = {"temp_lsb_per_degc": scales.temp_lsb_per_degc}
             settings = motion_settings(*sensor, **degree, **self.options)
             state, at = motion_state(settings), _MOTION_WORDS
         else:
-            from zerorate.gravity.gravity_settings import gravity_settings, gravity_state
-
             settings = gravity_settings(*sensor, **self.options)
             state, at = gravity_state(settings), _GRAVITY_WORDS
         return np.array(state, np.int32), np.array(settings, np.int32), at

@@ -13,6 +13,10 @@ import serial
 from zerorate_tools.boards.connection import connected, output_of
 from zerorate_tools.boards.flashing import flash
 from zerorate_tools.errors import MissingRuntime
+from zerorate_tools.kernels.reading import firmware_package
+from zerorate_tools.model import Slot, build_model, encoded
+from zerorate_tools.model.term import Term
+from zerorate_tools.recordings import Scales
 
 from ..limits import Limit, limits_table, verdicts
 from ..tables import number, table
@@ -253,10 +257,6 @@ def _turning(rows: np.ndarray) -> np.ndarray:
 
 def model() -> bytes:
     """An effect model of two slots for the sensor of the plays."""
-    from zerorate_tools.model import Slot, build_model, encoded
-    from zerorate_tools.model.term import Term
-    from zerorate_tools.recordings import Scales
-
     slots = [
         Slot(Term("temp", 20, 45, 32.5, power=2), (0.001, -0.002, 0.0003)),
         Slot(Term("temp", 20, 45, 32.5), (0.004, 0.001, -0.002)),
@@ -266,8 +266,6 @@ def model() -> bytes:
 
 def second_program() -> str:
     """The text of docs/pico.md's second program."""
-    from zerorate_tools.kernels.reading import firmware_package
-
     checkout = firmware_package().parents[1]
     return (checkout / _PROGRAM).read_text(encoding="utf-8")
 

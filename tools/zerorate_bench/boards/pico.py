@@ -29,6 +29,7 @@ import numpy as np
 from numpy.typing import NDArray
 from zerorate import Corrector, Sensor
 from zerorate.bursts import Bursts
+from zerorate.model import EffectModel
 from zerorate_tools.boards.connection import connected, output_of
 from zerorate_tools.errors import MissingRuntime
 from zerorate_tools.runtimes.node import install, locked_version, node_command
@@ -251,8 +252,6 @@ def on_host(play: Play) -> Played:
     """The same here, by CPython."""
     corrector = play.corrector()
     if play.model:
-        from zerorate.model import EffectModel
-
         effects = EffectModel()
         effects.load(play.model, corrector.sensor)
         effects.refine()

@@ -4,6 +4,7 @@ import json
 import struct
 
 import numpy as np
+from mcap.writer import Writer
 from rosbags.rosbag1 import Writer as Writer1
 from rosbags.rosbag2 import StoragePlugin
 from rosbags.rosbag2 import Writer as Writer2
@@ -153,8 +154,6 @@ def _write(writer, messages, stores, store=None):
 
 
 def _mcap_of_json(path, messages, torn):
-    from mcap.writer import Writer
-
     with open(path, "wb") as file:
         writer = Writer(file, chunk_size=1 << 16)
         writer.start()

@@ -6,6 +6,9 @@ from itertools import product
 
 import numpy as np
 
+from .added_effects import CURVES, PRANDTL_ISHLINSKII, PRANDTL_ISHLINSKII_KNOWN
+from .simulated import HOSTILE
+
 #: The fourteen effects of the catalogue that must be found at twice the floor.
 CATALOGUE = (
     "temperature-quadratic",
@@ -113,8 +116,6 @@ def devices(nulls: int, seeds: int, real: list[str]) -> list[Device]:
 
     real: names of quiet recordings, none for no row of real noise.
     """
-    from .simulated import HOSTILE
-
     plain = [Device(NULL, _SEEDS["null"] + i) for i in range(nulls)]
     some = [
         *plain,
@@ -145,8 +146,6 @@ def _effects(seeds: int) -> Iterator[Device]:
 
 
 def _many_widths(seeds: int) -> Iterator[Device]:
-    from .added_effects import PRANDTL_ISHLINSKII, PRANDTL_ISHLINSKII_KNOWN
-
     for n, i in product(POWER_ONS, range(_OF_MANY * seeds)):
         seed, fresh = (_SEEDS[row] + 1000 * n + i for row in ("many widths", "start known"))
         loop, known = ((PRANDTL_ISHLINSKII, 2.0),), ((PRANDTL_ISHLINSKII_KNOWN, 2.0),)
@@ -156,8 +155,6 @@ def _many_widths(seeds: int) -> Iterator[Device]:
 
 
 def _curves(seeds: int) -> Iterator[Device]:
-    from .added_effects import CURVES
-
     for n, curve, i in product(_CURVE_POWER_ONS, CURVES, range(int(_OF_A_CURVE * seeds))):
         yield Device(CURVE, _SEEDS["curve"] + 1000 * n + i, ((curve, _CURVE_FLOORS),), sessions=n)
 

@@ -11,6 +11,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from zerorate_tools.closing import load
+from zerorate_tools.loop.report.report import report
+from zerorate_tools.loop.verify.analysis import model_of
+from zerorate_tools.loop.verify.firmware import Firmware
+from zerorate_tools.recordings import open_recording, write_recording
+from zerorate_tools.recordings.recording import ATTITUDE
+from zerorate_tools.replay.samples import frames_in_batches
+from zerorate_tools.simulate import simulate_sessions
 
 from .devices import Device
 from .run_trial import Outcome
@@ -136,9 +144,6 @@ def description(row: str) -> dict:
 
 def look_at_files(device: Device) -> Outcome:
     """Simulate a device into files, close them, and take the report's word for what was found."""
-    from zerorate_tools.closing import load
-    from zerorate_tools.loop.report.report import report
-
     with tempfile.TemporaryDirectory() as folder:
         made = list(_written(device, Path(folder)))
         paths = [path for path, _ in made]
@@ -165,11 +170,6 @@ def look_at_files(device: Device) -> Outcome:
 
 def _in_motion_mdps(analysis, path: Path, truth) -> float:
     """RMS over the moving samples and the axes of the firmware's error, learning as it goes."""
-    from zerorate_tools.loop.verify.analysis import model_of
-    from zerorate_tools.loop.verify.firmware import Firmware
-    from zerorate_tools.recordings import open_recording
-    from zerorate_tools.replay.samples import frames_in_batches
-
     recording = open_recording(path)
     scales = recording.scales
     device = Firmware(scales, model_of(analysis, scales))
@@ -182,10 +182,6 @@ def _in_motion_mdps(analysis, path: Path, truth) -> float:
 
 def _written(device: Device, folder: Path) -> Iterator[tuple[Path, Any]]:
     """(file, truth) of every session."""
-    from zerorate_tools.recordings import write_recording
-    from zerorate_tools.recordings.recording import ATTITUDE
-    from zerorate_tools.simulate import simulate_sessions
-
     made = simulate_sessions(description(device.row), seed=device.seed)
     for i, (recording, truth) in enumerate(made):
         columns = dict(recording.columns)

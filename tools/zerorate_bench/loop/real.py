@@ -9,11 +9,15 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from zerorate_tools.closing import load
+from zerorate_tools.importers import import_recording
 from zerorate_tools.loop.fit.line import ordinary
 from zerorate_tools.loop.fit.regression import predicted
 from zerorate_tools.loop.fit.single import PiecesByLine, held
+from zerorate_tools.loop.report.report import report
 from zerorate_tools.loop.search.catalogue import ranges
 from zerorate_tools.loop.verify.judge import rms_dps, scored
+from zerorate_tools.loop.verify.run_kernels import run_and_prune
 from zerorate_tools.model.term import Term
 
 from ..public_data import CLOSED_ALONE, CLOSED_TOGETHER, told_of
@@ -43,11 +47,6 @@ def real_rows(data: Path) -> dict[str, dict]:
 
 
 def _closed(paths: list[Path], scratch: Path) -> dict:
-    from zerorate_tools.closing import load
-    from zerorate_tools.importers import import_recording
-    from zerorate_tools.loop.report.report import report
-    from zerorate_tools.loop.verify.run_kernels import run_and_prune
-
     logs = [scratch / f"{path.parent.name}-{path.name.split('.')[0]}.parquet" for path in paths]
     for path, log in zip(paths, logs):
         import_recording(path, log, **told_of(path))

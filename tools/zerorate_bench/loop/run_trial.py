@@ -1,12 +1,21 @@
 """One device looked at: simulated, closed, and judged by a session that no fit has seen."""
 
+import time
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from zerorate_tools.loop.fit.line import ordinary
+from zerorate_tools.loop.fit.regression import predicted
+from zerorate_tools.loop.fit.single import PiecesByLine
+from zerorate_tools.loop.search.select import select, straight_line
+from zerorate_tools.loop.search.steps_first import remove_steps
+from zerorate_tools.loop.verify.judge import residuals, rms_dps, scored
+from zerorate_tools.loop.verify.prune_by_holdout import prune_by_holdout
 
-from .added_effects import CURVE_OF
+from .added_effects import CURVE_OF, PRANDTL_ISHLINSKII_TOLD
+from .corners import simulate_corners
 from .devices import CORNERS, CURVE, TOLD, Device
-from .simulated import cut_into_sessions
+from .simulated import cut_into_sessions, simulate
 
 
 @dataclass
@@ -55,10 +64,6 @@ class Outcome:
 
 def run_trial(device: Device) -> Outcome:
     """Simulate a device, run the loop on it and judge by its last session."""
-    import time
-
-    from .simulated import simulate
-
     began = time.process_time()
     if device.row == TOLD:
         return _told(device)
@@ -78,10 +83,6 @@ def run_trial(device: Device) -> Outcome:
 
 def _corners(device: Device) -> Outcome:
     """The steps that are taken out of a recording before anything else is looked for."""
-    from zerorate_tools.loop.search.steps_first import remove_steps
-
-    from .corners import simulate_corners
-
     [session] = remove_steps(simulate_corners(device.seed).sessions)
     return Outcome(device, events=len(session.steps))
 
@@ -89,9 +90,6 @@ def _corners(device: Device) -> Outcome:
 def _told(device: Device) -> Outcome:
     """What a model of the loop itself leaves, which takes it to start where the temperature does:
     found where some axis of the last session is nearer with it, and it corrects those alone."""
-    from .added_effects import PRANDTL_ISHLINSKII_TOLD
-    from .simulated import simulate
-
     (_, size), n = device.effects[0], device.sessions
     made = simulate(device.seed, device.effects, n)
     left = simulate(device.seed, [(PRANDTL_ISHLINSKII_TOLD, size)], n)
@@ -116,11 +114,6 @@ def _rms(each: np.ndarray) -> float:
 
 def _left_by_line(sessions) -> np.ndarray:
     """(3,) RMS of the last session beside the line over temperature of the others."""
-    from zerorate_tools.loop.fit.line import ordinary
-    from zerorate_tools.loop.fit.regression import predicted
-    from zerorate_tools.loop.search.select import straight_line
-    from zerorate_tools.loop.verify.judge import rms_dps, scored
-
     line = straight_line(sessions[:-1])
     of_line = predicted(line, ordinary(line, sessions[:-1]), sessions[-1])
     return rms_dps([scored(sessions[-1], of_line)[0]])
@@ -128,20 +121,12 @@ def _left_by_line(sessions) -> np.ndarray:
 
 def _noise_rms(session, noise_dps: np.ndarray) -> float:
     """Of the blocks scored, over the axes."""
-    from zerorate_tools.loop.verify.judge import scored
-
     noise, _ = scored(replace(session, rate_dps=noise_dps), np.zeros(noise_dps.shape))
     return float(np.sqrt(np.nanmean(noise**2)))
 
 
 def judged(device: Device, sessions: list, noise_dps: np.ndarray) -> Outcome:
     """What the loop says of sessions. noise_dps: (n, 3) of the last one, nothing else in it."""
-    from zerorate_tools.loop.fit.single import PiecesByLine
-    from zerorate_tools.loop.search.select import select
-    from zerorate_tools.loop.search.steps_first import remove_steps
-    from zerorate_tools.loop.verify.judge import residuals, rms_dps
-    from zerorate_tools.loop.verify.prune_by_holdout import prune_by_holdout
-
     sessions = remove_steps(sessions)
     alone = PiecesByLine(sessions[0]) if len(sessions) == 2 else None
     every = select(sessions[:-1], 0, alone, judged_again=True)

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
+import pyarrow.parquet as pq
 from scipy.fft import irfft, rfft
 from zerorate_tools.loop.read.sessions import Session
 from zerorate_tools.model.term import first_order_lag
@@ -185,8 +186,6 @@ def noise_level(rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
 
 def write_blocks(data: Path, folder: Path) -> list[str]:
     """Write the block means of the long recordings at rest as .npy, and return their names."""
-    import pyarrow.parquet as pq
-
     names = []
     for pattern, hz in LONG_RESTS.items():
         for path in sorted(data.glob(pattern)):
@@ -204,10 +203,6 @@ def cut_into_sessions(name: str, seed: int) -> tuple[list, list]:
     """Four sessions of a quiet recording with simulated channels that mean nothing, and their
     noise. The cuts, their order, the axes' signs and the direction of time are drawn from the seed.
     """
-    from zerorate_tools.loop.read.sessions import Session
-
-    from .simulated import BLOCK_S, TICKS, channels
-
     rng = np.random.default_rng(seed)
     blocks = np.load(Path(os.environ[FOLDER]) / name)
     length = int(rng.uniform(0.18, 0.245) * len(blocks))

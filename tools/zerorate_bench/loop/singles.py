@@ -12,8 +12,18 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
+import pyarrow.parquet as pq
 from numpy.typing import NDArray
 from scipy.stats import chi2, ncx2
+from zerorate_tools.closing import load
+from zerorate_tools.loop.fit.regression import Regression
+from zerorate_tools.loop.report.report import report
+from zerorate_tools.loop.search.steps_first import bend_of
+from zerorate_tools.loop.verify.firmware import Firmware
+from zerorate_tools.loop.verify.run_kernels import run_and_prune
+from zerorate_tools.recordings import open_recording, write_recording
+from zerorate_tools.replay.samples import frames_in_batches
+from zerorate_tools.simulate import simulate_sessions
 
 from ..tables import machine_line, outcomes
 from .devices import KINDS, describe
@@ -58,12 +68,6 @@ class Single:
 
 def look_at_single(seed: int) -> Single:
     """Simulate a device, close its recordings, and judge by the truth."""
-    from zerorate_tools.closing import load
-    from zerorate_tools.loop.report.report import report
-    from zerorate_tools.loop.verify.run_kernels import run_and_prune
-    from zerorate_tools.recordings import write_recording
-    from zerorate_tools.simulate import simulate_sessions
-
     described, kind, recordings = describe(seed)
     *made, further = list(simulate_sessions(described, seed=seed))
     with tempfile.TemporaryDirectory() as folder:
@@ -86,9 +90,6 @@ def look_at_single(seed: int) -> Single:
 def tellable(session, step: dict) -> float:
     """The chance that a step of the bias is listed by who knows level and colour of the noise
     beside it, where one in a hundred recordings may have one invented: all its places are tried."""
-    from zerorate_tools.loop.fit.regression import Regression
-    from zerorate_tools.loop.search.steps_first import bend_of
-
     session = replace(session, steps=())  # else the very step that was listed is beside it
     regression, bend = Regression([session]), bend_of(session)
     regression.settle(bend)
@@ -117,8 +118,6 @@ def _took_place(step: dict, made: list) -> bool:
 
 def _held_out(path: Path, logs: list[Path], made: list, described: dict) -> dict:
     """(before, after) mdps at rest and in motion, over the samples that were left out."""
-    import pyarrow.parquet as pq
-
     table = pq.read_table(path)
     names, split = (np.array(table[c].to_pylist()) for c in ("recording", "split"))
     parts: dict[str, list] = {"at rest": [], "in motion": []}
@@ -157,10 +156,6 @@ def _about(both, stretch, rest, scored) -> list[NDArray[np.float64]]:
 def _further(model, logs: list[Path], further) -> tuple[float, float]:
     """(before, after) mdps over a power-on that nobody saw, by a firmware that has lived through
     the recordings and learns no more than the first minutes of this one."""
-    from zerorate_tools.loop.verify.firmware import Firmware
-    from zerorate_tools.recordings import open_recording
-    from zerorate_tools.replay.samples import frames_in_batches
-
     recording, truth = further
     errors: list[float] = []
     for own in (None, model if model.slots else None):

@@ -18,6 +18,7 @@ from ..tables import machine, machine_line, outcomes, table
 from .devices import Device, devices
 from .figures import Figure, figures
 from .files import ROWS, file_devices, look_at_files
+from .real import real_rows
 from .run_trial import Outcome, run_trial
 from .simulated import FOLDER, write_blocks
 
@@ -141,8 +142,6 @@ def run(
     result: dict = {"devices": len(seen), "machine": machine()}
     result["cpu_s_a_device"] = sum(o.cpu_s for o in seen) / max(len(seen), 1)
     if folder and folder.is_dir() and not rows:
-        from .real import real_rows
-
         result["real_recordings"] = real_rows(folder)
     result["figures"] = [f.to_dict() for f in found]
     result["false_alarms"] = _examples(seen)

@@ -10,9 +10,20 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from zerorate_tools.closing import load
+from zerorate_tools.errors import ZerorateError
+from zerorate_tools.importers import import_recording
+from zerorate_tools.loop.analyse import sessions_of
+from zerorate_tools.loop.read.blocks import session_of
+from zerorate_tools.loop.read.ticks import read_ticks, tick_seconds
+from zerorate_tools.loop.report.report import report
+from zerorate_tools.loop.verify.firmware import Firmware
+from zerorate_tools.loop.verify.power_on import BlockMeans, PowerOn, ideal_dps, turn_on
+from zerorate_tools.loop.verify.run_kernels import run_and_prune
 from zerorate_tools.recordings import Recording, open_recording, read_recording, write_recording
 from zerorate_tools.recordings.checks import GAP
 from zerorate_tools.recordings.recording import ACCEL, GYRO, TEMP, TIME
+from zerorate_tools.replay.samples import frames_in_batches
 
 from ..public_data import CLOSED_ALONE, told_of
 from ..tables import machine_line, table
@@ -76,8 +87,6 @@ def variant_rows(data: Path, advance: Callable[[float], None] = lambda n: None) 
 
 def _imported(path: Path, scratch: Path) -> Recording:
     """A recording without the channels that have gaps."""
-    from zerorate_tools.importers import import_recording
-
     log = scratch / "imported.parquet"
     import_recording(path, log, **told_of(path))
     recording = read_recording(log, keep_gaps=True)
@@ -105,18 +114,10 @@ def _written(recording: Recording, path: Path) -> Path:
 
 
 def _sessions(logs: list[Path]):
-    from zerorate_tools.loop.analyse import sessions_of
-    from zerorate_tools.loop.read.ticks import read_ticks, tick_seconds
-
     return sessions_of([read_ticks(log, max(map(tick_seconds, logs))) for log in logs])[0]
 
 
 def _looked_at(whole: Recording, variant: str, made: list[Recording], scratch: Path) -> dict:
-    from zerorate_tools.closing import load
-    from zerorate_tools.errors import ZerorateError
-    from zerorate_tools.loop.report.report import report
-    from zerorate_tools.loop.verify.run_kernels import run_and_prune
-
     logs = [_written(r, scratch / f"part-{i}.parquet") for i, r in enumerate(made)]
     try:
         analysis, model = run_and_prune(load([*logs]), logs, scratch / "corrected.parquet")
@@ -147,12 +148,6 @@ def _is_listed(events: list[dict], recording: Recording) -> bool:
 def _elsewhere(analysis, model, log: Path, other: Path) -> dict:
     """Before and after on a part that was not given, by a firmware that has learned the part that
     was and takes its offset from the first still minute; at temperatures that both have."""
-    from zerorate_tools.loop.read.blocks import session_of
-    from zerorate_tools.loop.read.ticks import read_ticks, tick_seconds
-    from zerorate_tools.loop.verify.firmware import Firmware
-    from zerorate_tools.loop.verify.power_on import BlockMeans, PowerOn, ideal_dps, turn_on
-    from zerorate_tools.replay.samples import frames_in_batches
-
     own, scales = analysis.sessions[0], open_recording(other).scales
     session = session_of(read_ticks(other, tick_seconds(other)), own.block_s)
     power_on = PowerOn(
