@@ -18,10 +18,8 @@ from zerorate_tools.simulate import simulate
 from zerorate_tools.simulate.description import load_description
 from zerorate_tools.simulate.schema import Description
 
-from zerorate_bench.peers import Source
-
 from .native.native_cost import source_cost
-from .peers import Decision, vqf_clip_raised
+from .peers import Decision, Judged, Source, vqf_clip_raised
 
 SCENARIOS = (
     *("never-rests", "rests-30", "short-rests", "trembling", "slow-tilt", "slow-log"),
@@ -147,17 +145,13 @@ def _on_trial(peer: Peer, trial: Trial, truth: TrueBias) -> dict:
 
 
 def _measured(peer: Peer, one: Given, bias: NDArray[np.float64]) -> dict:
-    if not isinstance(peer, Source | Decision):
+    if not isinstance(peer, Judged):
         return {"error_dps": peer([one])[0] - bias}
     peer.truth_dps = [bias]
     error = peer([one])[0] - bias
     inside = float(np.mean(peer.within)) if peer.within else None
-    return {
-        "error_dps": error,
-        "learned": getattr(peer, "learned", 0),
-        "wrong": getattr(peer, "wrong", 0),
-        "within_two_sigma": inside,
-    }
+    counts = {"learned": peer.learned, "wrong": peer.wrong}
+    return {"error_dps": error, **counts, "within_two_sigma": inside}
 
 
 def _cost() -> dict[str, dict[str, float]] | str:

@@ -8,6 +8,7 @@ firmware's two sources that need no rest, on its own; a Decision is the firmware
 """
 
 import ctypes
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -96,26 +97,34 @@ def _step_means(temp: NDArray, rates: NDArray, steps: NDArray) -> tuple[NDArray,
     return means[0], np.stack(means[1:], axis=1)
 
 
-class Source:
-    """A source as a peer; calling it returns each session's bias (n, 3), dps, 0 while unknown.
+class Judged(ABC):
+    """A peer that also says how sure it is; calling it returns each session's bias (n, 3), dps.
 
-    name: in_motion or gravity; options: keywords of its settings. After a call, `within` holds
-    for every learned value and axis whether the truth given in `truth_dps` lay within two sigma;
-    `learned` counts the windows or intervals, `wrong` those with an axis beyond four sigma;
-    `state` is that at the end.
+    Every session begins from nothing. After a call, `within` holds for every judged value and axis
+    whether the truth given in `truth_dps` lay within two sigma; `learned` counts what was learned,
+    `wrong` what of it had an axis beyond four sigma.
+    """
+
+    truth_dps: Sequence[NDArray[np.float64]] | None = None
+
+    def __call__(self, sessions: Sequence[Given]) -> list[NDArray[np.float64]]:
+        self.within: list[bool] = []
+        self.learned = self.wrong = 0
+        return [self._biases(number, one) for number, one in enumerate(sessions)]
+
+    @abstractmethod
+    def _biases(self, number: int, one: Given) -> NDArray[np.float64]:
+        """The bias of a session by its number."""
+
+
+class Source(Judged):
+    """A source as a peer, its bias 0 while unknown; it learns by windows or intervals.
+
+    name: in_motion or gravity; options: keywords of its settings; state: that at the end.
     """
 
     def __init__(self, name: str, **options: object) -> None:
-        self.name = name
-        self.options = options
-        self.truth_dps: Sequence[NDArray[np.float64]] | None = None
-        self.within: list[bool] = []
-        self.learned = self.wrong = 0
-
-    def __call__(self, sessions: Sequence[Given]) -> list[NDArray[np.float64]]:
-        """Run every session from nothing."""
-        self.within, self.learned, self.wrong = [], 0, 0
-        return [self._biases(number, one) for number, one in enumerate(sessions)]
+        self.name, self.options = name, options
 
     def _biases(self, number: int, one: Given) -> NDArray[np.float64]:
         state, settings, (bias_at, sigma_at) = self._made(one)
@@ -165,23 +174,15 @@ def vqf_clip_raised(sessions: Sequence[Given]) -> list[NDArray[np.float64]]:
     return [vqf_biases(one, RAISED) for one in sessions]
 
 
-class Decision:
-    """As `firmware`, one power-on a session; options: keywords of zerorate.Corrector.
+class Decision(Judged):
+    """As `firmware`, one power-on a session, judged at the end of every ten seconds with a bias.
 
-    model: the effects that are taken out first; the bias is what is left of the rate then.
-    After a call `within` holds, for each axis at the end of every stretch of ten seconds in which
-    it had a bias, whether the truth given in `truth_dps` lay within two sigma.
+    model: the effects that are taken out first; the bias is what is left of the rate then;
+    options: keywords of zerorate.Corrector.
     """
 
     def __init__(self, model: Model | None = None, **options: object) -> None:
         self.model, self.options = model, options
-        self.truth_dps: Sequence[NDArray[np.float64]] | None = None
-        self.within: list[bool] = []
-
-    def __call__(self, sessions: Sequence[Given]) -> list[NDArray[np.float64]]:
-        """Run every session from nothing."""
-        self.within = []
-        return [self._biases(number, one) for number, one in enumerate(sessions)]
 
     def states(self, one: Given) -> list[NDArray[Any]]:
         """Bias and its one sigma, dps, and the source, each (n, 3), from nothing.

@@ -19,6 +19,12 @@ def table(header: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
     return "\n".join("| " + " | ".join(str(cell) for cell in line) + " |" for line in lines) + "\n"
 
 
+def table_of(rows: Sequence[Mapping[str, object]]) -> str:
+    """A Markdown table of rows by the names of their columns; empty where a row has none."""
+    keys = list(dict.fromkeys(key for row in rows for key in row))
+    return table([k.replace("_", " ") for k in keys], [[r.get(k, "") for k in keys] for r in rows])
+
+
 def number(value: float) -> str:
     """A figure in three digits or so; a dash where there is none."""
     if value != value:

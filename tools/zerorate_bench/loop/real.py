@@ -21,7 +21,7 @@ from zerorate_tools.loop.verify.run_kernels import run_and_prune
 from zerorate_tools.model.term import Term
 
 from ..public_data import CLOSED_ALONE, CLOSED_TOGETHER, told_of
-from ..tables import machine_line, table
+from ..tables import machine_line, table_of
 
 #: Of the error before, and of a cubic's, that the error after may be; of a cubic's, the median.
 _MOST_OF_BEFORE, _MOST_OF_CUBIC, _MEDIAN = 1.0, 1.05, 0.7
@@ -105,10 +105,12 @@ def in_words(rows: dict[str, dict]) -> str:
         f"each axis by what was held out itself: {_median(floors):.2f}.",
         "",
     ]
-    keys = list(dict.fromkeys(k for row in rows.values() for k in row))
-    header = ("recording", *(k.replace("_", " ") for k in keys))
-    cells = [(name, *(row.get(k, "") for k in keys)) for name, row in rows.items()]
-    return "\n".join([*lines, table(header, cells)])
+    return "\n".join([*lines, recordings_table(rows)])
+
+
+def recordings_table(rows: dict[str, dict]) -> str:
+    """A row a recording."""
+    return table_of([{"recording": name, **row} for name, row in rows.items()])
 
 
 def _median(values: Iterable[float]) -> float:

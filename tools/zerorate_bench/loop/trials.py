@@ -18,7 +18,7 @@ from ..tables import machine, machine_line, outcomes, table
 from .devices import Device, devices
 from .figures import Figure, figures
 from .files import ROWS, file_devices, look_at_files
-from .real import real_rows
+from .real import real_rows, recordings_table
 from .run_trial import Outcome, run_trial
 from .simulated import FOLDER, write_blocks
 
@@ -173,15 +173,15 @@ def _examples(outcomes: list[Outcome]) -> list[list]:
 
 def markdown(result: dict) -> str:
     """The figures as Markdown, the missed ones first."""
-    rows = [Figure(**{k: v for k, v in f.items() if k != "met"}) for f in result["figures"]]
-    missed = [f.name for f in rows if f.met is False]
-    head = f"{len(missed)} of {sum(f.met is not None for f in rows)} figures missed"
+    missed = [f["name"] for f in result["figures"] if f["met"] is False]
+    limits = sum(f["met"] is not None for f in result["figures"])
+    head = f"{len(missed)} of {limits} figures missed"
     head_line = f"# What closing the loop finds, on {result['devices']} devices"
     parts = [head_line, "", "`zerorate bench loop` wrote this page. " + machine_line()]
     parts += [f"{head}: {'; '.join(missed)}." if missed else "Every figure is reached.", ""]
     parts.append(figure_table(result["figures"]))
     if "real_recordings" in result:
-        parts += ["## Real recordings", "", _real(result["real_recordings"])]
+        parts += ["## Real recordings", "", recordings_table(result["real_recordings"])]
     return "\n".join(parts)
 
 
@@ -208,22 +208,12 @@ def _name(line: str) -> str:
 
 def figure_table(figures: list[dict]) -> str:
     """A row a figure, as `Figure.to_dict` has it."""
-    rows = [Figure(**{k: v for k, v in f.items() if k != "met"}) for f in figures]
     header = ("figure", "measured", "limit", "reached", "95 % interval", "devices")
-    return table(header, [_cells(f) for f in rows])
+    return table(header, [_cells(**f) for f in figures])
 
 
-def _cells(f: Figure) -> tuple:
-    unit = "" if f.unit == "%" else f" {f.unit}"
-    sign = "at most" if f.at_most else "at least"
-    limit = "" if f.limit is None else f"{sign} {f.limit:g}"
-    span = "" if f.low is None else f"{f.low:.1f}-{f.high:.1f}"
-    digits = 1 if f.unit == "%" else 3
-    reached = {None: "", True: "yes", False: "NO"}[f.met]
-    return f.name, f"{f.value:.{digits}f}{unit}", limit, reached, span, f.devices
-
-
-def _real(rows: dict[str, dict]) -> str:
-    keys = list(dict.fromkeys(k for row in rows.values() for k in row))
-    header = ("recording", *(k.replace("_", " ") for k in keys))
-    return table(header, [(name, *(row.get(k, "") for k in keys)) for name, row in rows.items()])
+def _cells(name, value, limit, at_most, devices, low, high, unit, met) -> tuple:
+    measured = f"{value:.1f}" if unit == "%" else f"{value:.3f} {unit}"
+    bound = "" if limit is None else f"at {'most' if at_most else 'least'} {limit:g}"
+    span = "" if low is None else f"{low:.1f}-{high:.1f}"
+    return name, measured, bound, {None: "", True: "yes", False: "NO"}[met], span, devices

@@ -26,7 +26,7 @@ from zerorate_tools.recordings.recording import ACCEL, GYRO, TEMP, TIME
 from zerorate_tools.replay.samples import frames_in_batches
 
 from ..public_data import CLOSED_ALONE, told_of
-from ..tables import machine_line, table
+from ..tables import machine_line, table, table_of
 from .real import rms_mdps
 
 #: A step that is put in: where in the course, and of how many times the noise of a block.
@@ -202,12 +202,7 @@ def in_words(rows: list[dict]) -> str:
     steps = [r["found_the_step"] for r in rows if "found_the_step" in r]
     said = f"Steps of {_STEP_NOISES:g} times the noise of a block listed"
     lines += [f"{said}: {sum(steps)} of {len(steps)}.", ""]
-    keys = list(dict.fromkeys(k for row in rows for k in row))
-    return "\n".join([*lines, table([k.replace("_", " ") for k in keys], _cells(rows, keys))])
-
-
-def _cells(rows, keys) -> list[list]:
-    return [[row.get(k, "") for k in keys] for row in rows]
+    return "\n".join([*lines, table_of(rows)])
 
 
 def _by_variant(rows: list[dict]) -> dict[str, list[dict]]:

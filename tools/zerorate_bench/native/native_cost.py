@@ -172,7 +172,6 @@ def emulated(package: Path, part: str, processor: str) -> Emulated:
 
 # frames of 14 bytes in the 1024 bytes of an MPU-6050's FIFO, of which it loses none at this
 AT_ONCE = 64
-_UPDATES = ("motion", "gravity")
 # by the last of these samples windows in motion are at their longest
 _FROM, _TO = 4000, 7200
 _EFFECTS_TO = 1000
@@ -205,13 +204,17 @@ def code_bytes() -> dict[str, dict[str, int]]:
 def source_cost() -> dict[str, dict[str, float]]:
     """motion, gravity -> instructions and cycles a sample, mean and worst, on a Cortex-M0+."""
     recording, _ = simulate("never-rests", session=1, seed=1)
-    frames = recording.between(0, _TO).samples()
+    frames = recording.between(0, _TO).samples().astype(np.int32)
     motion, gravity = motion_settings(), gravity_settings()
     states = {
         "motion": (motion_state(motion), motion),
         "gravity": (gravity_state(gravity), gravity),
     }
-    return {part: _source(part, *states[part], frames.astype(np.int32)) for part in _UPDATES}
+    package = firmware_package()
+    return {
+        part: _cost(emulated(package, part, "thumb"), *arrays, frames, _FROM)
+        for part, arrays in states.items()
+    }
 
 
 def effects_cost() -> dict[str, dict[str, float]]:
@@ -235,22 +238,17 @@ def _of_slots(scales, terms, frames: NDArray) -> dict[str, float]:
         raise ZerorateError("the firmware refuses the model whose cost is asked for")
     for i in range(len(effects.channels)):
         effects.channel(i, 5010)
-    counts, cycles = [], []
+    return _cost(code, corrector.state, effects.e, frames)
+
+
+def _cost(code: Emulated, a: array, b: array, frames: NDArray, first: int = 0) -> dict[str, float]:
+    """Of calls with each frame, counted from the first of them on."""
+    counts = []
     for row in frames:
-        code(corrector.state, effects.e, array("i", row.tobytes()), 10000)
-        counts.append(code.instructions)
-        cycles.append(code.cycles)
-    return {"instructions": mean(counts), "cycles": mean(cycles), "cycles_worst": max(cycles)}
-
-
-def _source(part: str, state: array, settings: array, frames: NDArray) -> dict[str, float]:
-    code, counts, cycles = emulated(firmware_package(), part, "thumb"), [], []
-    for i, row in enumerate(frames):
-        code(state, settings, array("i", row.tobytes()), 10000)
-        if i >= _FROM:
-            counts.append(code.instructions)
-            cycles.append(code.cycles)
-    return {"instructions": mean(counts), "cycles": mean(cycles), "cycles_worst": max(cycles)}
+        code(a, b, array("i", row.tobytes()), 10000)
+        counts.append((code.instructions, code.cycles))
+    instructions, cycles = zip(*counts[first:])
+    return {"instructions": mean(instructions), "cycles": mean(cycles), "cycles_worst": max(cycles)}
 
 
 def _against_c(work: Workload, processor: str, part: str, at_once: int) -> dict[str, Any]:
