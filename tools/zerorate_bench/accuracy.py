@@ -15,7 +15,7 @@ from zerorate_tools.simulate import simulate_sessions
 
 from .floors import told_everything, told_the_future
 from .limits import ACCURACY, SESSION_2, limits_table, verdicts
-from .peers import HOW, OURS, PEERS, within_two_sigma
+from .peers import HOW, OURS, PEERS, uncorrected, within_two_sigma
 from .public_data import data_folder, recordings, told_of
 from .tables import machine, machine_line, number, table
 
@@ -221,12 +221,11 @@ def _real(figures: Mapping | None) -> Iterator[str]:
     yield table(["mdps", *COLUMNS], rows)
 
 
-def nothing(sessions) -> list[NDArray[np.float64]]:
-    """No correction."""
-    return [np.zeros_like(one.rate_dps) for one in sessions]
-
-
-COLUMNS: dict[str, Peer] = {"uncorrected": nothing, "mean of the first 10 s": first_seconds, **OURS}
+COLUMNS: dict[str, Peer] = {
+    "uncorrected": uncorrected,
+    "mean of the first 10 s": first_seconds,
+    **OURS,
+}
 
 
 def rest_errors(recording: Recording, peer: Peer) -> dict[str, float]:

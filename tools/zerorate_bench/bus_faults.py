@@ -10,6 +10,7 @@ from array import array
 from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from functools import partial
 
 from zerorate.checked import CheckedCorrector
 from zerorate.corrector import Corrector, Sensor
@@ -203,29 +204,17 @@ def fifo_overflow(bench: Bench) -> None:
     bench.run(50)
 
 
-def brown_out(bench: Bench) -> None:
-    """The chip asleep and at its reset values, its data zero."""
-    bench.chip.power_up()
-    bench.run(150)
-
-
-def brown_out_data_kept(bench: Bench) -> None:
-    """The same, its last sample still in the data registers."""
+def brown_out(bench: Bench, data_kept: bool = False, awake: bool = False) -> None:
+    """The chip at its reset values: its data zero, or its last sample still there; asleep, or awake
+    and measuring at once, in the range of reset."""
     data = bytes(bench.chip.registers[0x3B:0x49])
     bench.chip.power_up()
-    bench.chip.registers[0x3B:0x49] = data
-    bench.run(150)
-
-
-def brown_out_awake(bench: Bench) -> None:
-    """The same, but awake and measuring at once, in the range of reset."""
-    data = bytes(bench.chip.registers[0x3B:0x49])
-    bench.chip.power_up()
-    bench.chip.registers[0x3B:0x49] = data
-    bench.chip.write(0x6B, 0x01)
-    bench.chip.write(0x19, 9)
-    bench.chip.write(0x1A, 3)
-    bench.chip.step()
+    if data_kept:
+        bench.chip.registers[0x3B:0x49] = data
+    if awake:
+        for register, value in ((0x6B, 1), (0x19, 9), (0x1A, 3)):
+            bench.chip.write(register, value)
+        bench.chip.step()
     bench.run(150)
 
 
@@ -255,8 +244,8 @@ FAULTS: dict[str, Callable[[Bench], None]] = {
     "fifo-desync": fifo_desync,
     "fifo-overflow": fifo_overflow,
     "brown-out": brown_out,
-    "brown-out-data-kept": brown_out_data_kept,
-    "brown-out-awake": brown_out_awake,
+    "brown-out-data-kept": partial(brown_out, data_kept=True),
+    "brown-out-awake": partial(brown_out, data_kept=True, awake=True),
     "chip-swapped": chip_swapped,
 }
 

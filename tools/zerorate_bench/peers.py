@@ -169,8 +169,13 @@ class Source(Judged):
         self.within += inside[known].tolist()
 
 
+def uncorrected(sessions: Sequence[Given]) -> list[NDArray[np.float64]]:
+    """No bias at all."""
+    return [np.zeros_like(one.rate_dps) for one in sessions]
+
+
 def vqf_clip_raised(sessions: Sequence[Given]) -> list[NDArray[np.float64]]:
-    """The same with clip 25 dps and initial sigma 8 dps."""
+    """As `vqf_default`, with clip 25 dps and initial sigma 8 dps."""
     return [vqf_biases(one, RAISED) for one in sessions]
 
 

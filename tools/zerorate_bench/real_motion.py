@@ -14,10 +14,10 @@ from zerorate_tools.loop.motion.by_windows import RateScale, by_windows
 from zerorate_tools.loop.motion.scales_and_timing import InMotion, slots_of
 from zerorate_tools.model import Model, build_model
 from zerorate_tools.model.model import binding_of
-from zerorate_tools.peers import Given, Peer, fusion, given, vqf_default
+from zerorate_tools.peers import Peer, fusion, given, vqf_default
 
 from .heading import GROUPS, moving_in
-from .peers import Decision
+from .peers import Decision, uncorrected
 from .tables import machine_line, number, table
 
 STARTS = FIRST_REST, COLD = "from a first rest", "cold"
@@ -47,13 +47,9 @@ part itself has another bias in motion than at rest, so no filter can be expecte
 """
 
 
-def _none(sessions: Sequence[Given]) -> list[NDArray[np.float64]]:
-    return [np.zeros_like(one.rate_dps) for one in sessions]
-
-
 def ways() -> dict[str, Peer]:
     """Every way that is told nothing of the device, by its name in the tables."""
-    return {OURS: Decision(), "vqf": vqf_default, "imufusion": fusion, NONE: _none}
+    return {OURS: Decision(), "vqf": vqf_default, "imufusion": fusion, NONE: uncorrected}
 
 
 def run(folders: Sequence[Path], advance: Callable[[float], None] = lambda n: None) -> dict:

@@ -12,24 +12,24 @@ from zerorate_tools.model.term import first_order_lag, play
 from .simulated import BLOCK_S, Device, noise, noise_level
 
 KINDS = ("charger", "freezer", "door")
-TICKS = 20
+TICKS, _BLOCKS = 20, 180
 _TICK_S = BLOCK_S / TICKS
 #: Readings of a thermometer, degC: of common parts.
 _READINGS_DEGC = (1 / 326.8, 1 / 16, 1 / 2)
 
 
-def simulate_corners(seed: int, blocks: int = 180) -> Device:
+def simulate_corners(seed: int) -> Device:
     """One recording of a device with a bias that bends over its own temperature and no step."""
     rng = np.random.default_rng(seed)
     kind = KINDS[seed % len(KINDS)]
-    around = {"charger": _charger, "freezer": _freezer, "door": _door}[kind](rng, blocks * TICKS)
+    around = {"charger": _charger, "freezer": _freezer, "door": _door}[kind](rng, _BLOCKS * TICKS)
     shown = first_order_lag(around, _log_uniform(rng, 3.0, 90.0), _TICK_S)
     own = first_order_lag(shown, _log_uniform(rng, 2.0, 120.0), _TICK_S)
     board = first_order_lag(shown, _log_uniform(rng, 150.0, 900.0), _TICK_S)
     if rng.random() < 0.5:  # the thermometer is the late one
         own, shown = shown, own
     floor, level = noise_level(rng)
-    made = noise(rng, blocks, "plain", level)
+    made = noise(rng, _BLOCKS, "plain", level)
     curve = np.outer(own - 25.0, rng.normal(0, 0.015, 3))
     curve += np.outer((own - 25.0) ** 2, rng.normal(0, 2e-4, 3))
     bent = play(board, rng.uniform(0.5, 4.0)) if rng.random() < 0.5 else board
@@ -39,8 +39,8 @@ def simulate_corners(seed: int, blocks: int = 180) -> Device:
     session = Session(
         "corners",
         *(BLOCK_S, TICKS),
-        made + curve.reshape(blocks, TICKS, 3).mean(axis=1) + rng.normal(0, 0.5, 3),
-        np.ones(blocks),
+        made + curve.reshape(_BLOCKS, TICKS, 3).mean(axis=1) + rng.normal(0, 0.5, 3),
+        np.ones(_BLOCKS),
         {"temp": shown},
         temp_step_degc=step,
     )

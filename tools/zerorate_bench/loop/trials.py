@@ -61,13 +61,13 @@ def figures_of(size: dict) -> list[Figure]:
 
 
 def resting(
-    folder: Path, odr_hz: float, noise_dps: float, accel: bool, turn_dps: float = 0.0, seed: int = 7
+    folder: Path, odr_hz: float, noise_dps: float, accel: bool, turn_dps: float = 0.0
 ) -> tuple[np.ndarray, np.ndarray]:
     """(m,) what counts as rest, and (m,) seconds, of two and a half hours with white noise.
 
     turn_dps: about every axis, for five of the minutes.
     """
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(7)
     at_s = np.arange(0, _LONG_S, 1 / odr_hz)
     turning = (at_s >= _TURN_S[0]) & (at_s < _TURN_S[1])
     columns = {"t_us": np.rint(at_s * 1e6).astype(np.int64)}
@@ -117,7 +117,6 @@ def run(
     *,
     data: str | PathLike[str] | None = None,
     resume: str | PathLike[str] | None = None,
-    size: bool = True,
     rows: str | None = None,
     advance: Callable[[float], None] = lambda n: None,
 ) -> dict:
@@ -125,8 +124,7 @@ def run(
 
     nulls: devices of each kind of nothing; seeds: devices an effect; data: folder of the real
     recordings, else ZERORATE_DATA, else none; resume: a file of outcomes, one a line, that a run
-    broken off goes on from; size: time and memory
-    of a device of 4 sessions of 8 hours at 100 Hz; rows: only devices whose key holds this text,
+    broken off goes on from; rows: only devices whose key holds this text,
     and nothing else.
     """
     folder = Path(data) if data else data_folder()
@@ -138,7 +136,7 @@ def run(
         seen = list(looked_at(every, processes, Path(resume) if resume else None, advance))
     found = figures(seen, whole=not rows)
     if not rows:
-        found += rest_figures() + (figures_of(close_cost(_WRITE)) if size else [])
+        found += rest_figures() + figures_of(close_cost(_WRITE))
     result: dict = {"devices": len(seen), "machine": machine()}
     result["cpu_s_a_device"] = sum(o.cpu_s for o in seen) / max(len(seen), 1)
     if folder and folder.is_dir() and not rows:
