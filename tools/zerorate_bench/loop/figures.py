@@ -202,8 +202,8 @@ def _unrecorded(rows):
 
 
 def _from_files(rows):
-    for row, (_, effect, _) in ROWS.items():
-        group = rows.get(row, [])
+    for row, of in ROWS.items():
+        group, effect = rows.get(row, []), of.named
         if group and effect:
             yield share(f"{row}: named", group, partial(Outcome.named, effect=effect), 98.0)
             moved = [o.in_motion_mdps for o in group if o.in_motion_mdps is not None]

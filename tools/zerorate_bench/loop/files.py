@@ -5,8 +5,8 @@ rest are run as well, so that the quick devices of the other rows are known to s
 """
 
 import tempfile
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -32,86 +32,79 @@ _PATH = [
     {"to": 46.0, "minutes": 16},
     {"minutes": 3},
 ]
-_TURNED = [
-    bout
-    for face in _FACES
-    for bout in (
-        {"kind": "rest", "s": [40, 90]},
-        {"kind": "pose", "face": face, "s": 3},
-        {"kind": "rest", "s": 15},
-        {"kind": "turn", "axis": "random", "deg": 100, "s": 3},
-    )
-]
-_POSED = [
-    bout
-    for face in _FACES
-    for bout in ({"kind": "rest", "s": [120, 240]}, {"kind": "pose", "face": face, "s": 3})
-]
-_HANDLED = [{"kind": "rest", "s": [60, 90]}, {"kind": "hand", "s": [30, 60]}]
-_IN_THE_HAND = [
-    bout
-    for face in _FACES
-    for bout in (
-        {"kind": "rest", "s": [40, 70]},
-        {"kind": "hand", "s": [20, 30]},
-        {"kind": "pose", "face": face, "s": 3},
-    )
-]
+_POSE = {"kind": "pose", "s": 3}
+
+
+def _rest(*seconds: float) -> dict:
+    return {"kind": "rest", "s": [*seconds]}
+
+
+def _on_each_face(*bouts: dict) -> list[dict]:
+    """The bouts once for each face, to which a pose among them turns."""
+    return [b | {"face": face} if b is _POSE else b for face in _FACES for b in bouts]
+
+
+_TURNED = _on_each_face(
+    _rest(40, 90),
+    _POSE,
+    {"kind": "rest", "s": 15},
+    {"kind": "turn", "axis": "random", "deg": 100, "s": 3},
+)
+_POSED = _on_each_face(_rest(120, 240), _POSE)
+_HANDLED = [_rest(60, 90), {"kind": "hand", "s": [30, 60]}]
+_IN_THE_HAND = _on_each_face(_rest(40, 70), {"kind": "hand", "s": [20, 30]}, _POSE)
 _OF_ACCELERATION = [[1.0, 0.3, 0.0], [0.0, 1.0, -0.3], [0.3, 0.0, 1.0]]
 #: Seconds of a power-on before its error in motion counts: the turn-on offset is learned first.
 _LEARNED_S = 600
 _FLOOR_DPS = 0.002
 _CROSS = [[0.0, 0.01, -0.005], [0.005, 0.0, 0.01], [-0.01, 0.005, 0.0]]
-_HISTORY = {"kind": "hysteresis", "rms_dps": 2 * _FLOOR_DPS, "beyond_temperature": True}
 HELD_IN_A_HAND = "files, acceleration 80 mdps, a third of it in the hand"
-#: Row -> what of a description differs, the effect that must be named ("" for none), and whether
-#: the attitude is recorded beside it.
-ROWS: dict[str, tuple[dict, str, bool]] = {
-    "files, nothing": ({}, "", False),
-    "files, nothing, turned over with Earth in it": (
-        {"motion": _POSED, "latitude_deg": 50.0},
-        "",
-        False,
+
+
+@dataclass(frozen=True)
+class Row:
+    """What of a description differs, the effect that must be named ("" for none), and whether the
+    attitude is recorded beside it."""
+
+    named: str = ""
+    motion: Sequence[dict] = ()
+    effect: dict | None = None
+    attitude: bool = False
+    latitude_deg: float | None = None
+
+
+def _twice_the_floor(**effect: Any) -> dict:
+    return {**effect, "rms_dps": 2 * _FLOOR_DPS}
+
+
+_HISTORY = _twice_the_floor(kind="hysteresis", beyond_temperature=True)
+ROWS = {
+    "files, nothing": Row(),
+    "files, nothing, turned over with Earth in it": Row(motion=_POSED, latitude_deg=50.0),
+    "files, nothing, handled with attitude": Row(motion=_HANDLED, attitude=True),
+    "files, hysteresis at 2x": Row("thermal-hysteresis", effect=_HISTORY),
+    "files, a line of 40 s at 2x": Row(
+        "periodic-interference", effect=_twice_the_floor(kind="periodic", hz=0.025)
     ),
-    "files, nothing, handled with attitude": ({"motion": _HANDLED}, "", True),
-    "files, hysteresis at 2x": ({"effect": [_HISTORY]}, "thermal-hysteresis", False),
-    "files, a line of 40 s at 2x": (
-        {"effect": [{"kind": "periodic", "hz": 0.025, "rms_dps": 2 * _FLOOR_DPS}]},
-        "periodic-interference",
-        False,
+    "files, mains folded to 1.7 Hz at 2x": Row(
+        "periodic-interference", effect=_twice_the_floor(kind="periodic", hz=51.7)
     ),
-    "files, mains folded to 1.7 Hz at 2x": (
-        {"effect": [{"kind": "periodic", "hz": 51.7, "rms_dps": 2 * _FLOOR_DPS}]},
-        "periodic-interference",
-        False,
+    "files, scale 1 % beside gravity": Row(
+        "scale-factor", _TURNED, {"kind": "scale", "dps": [0.01, -0.01, 0.01]}
     ),
-    "files, scale 1 % beside gravity": (
-        {"motion": _TURNED, "effect": [{"kind": "scale", "dps": [0.01, -0.01, 0.01]}]},
-        "scale-factor",
-        False,
+    "files, cross-axis 1 % beside gravity": Row(
+        "cross-axis", _TURNED, {"kind": "scale", "dps": 1.0, "matrix": _CROSS}
     ),
-    "files, cross-axis 1 % beside gravity": (
-        {"motion": _TURNED, "effect": [{"kind": "scale", "dps": 1.0, "matrix": _CROSS}]},
-        "cross-axis",
-        False,
+    "files, scale 0.1 % beside attitude": Row(
+        "scale-factor", _HANDLED, {"kind": "scale", "dps": [0.001, -0.001, 0.001]}, attitude=True
     ),
-    "files, scale 0.1 % beside attitude": (
-        {"motion": _HANDLED, "effect": [{"kind": "scale", "dps": [0.001, -0.001, 0.001]}]},
-        "scale-factor",
-        True,
-    ),
-    HELD_IN_A_HAND: (
-        {
-            "motion": _IN_THE_HAND,
-            "effect": [{"kind": "linear-g", "dps": 0.08, "matrix": _OF_ACCELERATION}],
-        },
+    HELD_IN_A_HAND: Row(
         "linear-acceleration",
-        False,
+        _IN_THE_HAND,
+        {"kind": "linear-g", "dps": 0.08, "matrix": _OF_ACCELERATION},
     ),
-    "files, readings 2 ms late": (
-        {"motion": _HANDLED, "effect": [{"kind": "timing", "delay_ms": 2.0}]},
-        "sample-timing",
-        True,
+    "files, readings 2 ms late": Row(
+        "sample-timing", _HANDLED, {"kind": "timing", "delay_ms": 2.0}, attitude=True
     ),
 }
 
@@ -123,8 +116,10 @@ def file_devices(seeds: int) -> list[Device]:
 
 def description(row: str) -> dict:
     """Of a row's device: four sessions of fifty minutes at 10 Hz, an MPU-6050."""
-    more = dict(ROWS[row][0])
-    motion = more.pop("motion", [])
+    of = ROWS[row]
+    more: dict[str, Any] = {} if of.effect is None else {"effect": [of.effect]}
+    if of.latitude_deg is not None:
+        more["latitude_deg"] = of.latitude_deg
     return {
         "sessions": 4,
         "sensor": {"odr_hz": 10.0, "gyro_noise_at_hz": 100.0, "accel_bias_g": [0.03, -0.02, 0.04]},
@@ -135,7 +130,7 @@ def description(row: str) -> dict:
             "vary_degc": 2.0,
             "vary_time": 0.15,
             "temperature": _PATH,
-            "motion": motion,
+            "motion": [*of.motion],
         },
         "channels": {"load": {"kind": "levels", "low": 0.0, "high": 100.0, "mean_s": 300.0}},
         **more,
@@ -185,7 +180,7 @@ def _written(device: Device, folder: Path) -> Iterator[tuple[Path, Any]]:
     made = simulate_sessions(description(device.row), seed=device.seed)
     for i, (recording, truth) in enumerate(made):
         columns = dict(recording.columns)
-        if ROWS[device.row][2]:
+        if ROWS[device.row].attitude:
             for name, q in zip(ATTITUDE, truth.attitude.T):
                 columns[name] = np.rint(q * 2**29).astype(np.int32)
         path = folder / f"session-{i + 1}.parquet"
