@@ -68,10 +68,6 @@ class World:
     def mps2(self) -> np.ndarray:
         return self.g * STANDARD_GRAVITY
 
-    @property
-    def mps2_without_gravity(self) -> np.ndarray:
-        return self.mps2 - [0, 0, STANDARD_GRAVITY]
-
     def counts(self, gyro: float = 131.0, accel: float = 16384.0) -> tuple[np.ndarray, np.ndarray]:
         """Rates and forces as whole counts of so many a deg/s and a g."""
         return np.rint(self.dps * gyro).astype(int), np.rint(self.g * accel).astype(int)
