@@ -11,7 +11,7 @@ from vulture import Vulture
 
 from ..mutant_trials import ends
 from ..mutants import AREAS, apart, area_of, files_of
-from .readability import LEAST_READING_EASE, MOST_WORDS_A_SENTENCE, pages, prose, readability
+from .readability import LEAST_READING_EASE, MOST_WORDS_A_SENTENCE, pages, readability
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -270,11 +270,3 @@ def test_every_page_reads_easily(repository):
         if words > MOST_WORDS_A_SENTENCE or ease < LEAST_READING_EASE
     }
     assert hard == {}
-
-
-def test_only_sentences_count():
-    page = (
-        "# A title\n\nIt takes 3.5 s of [rest](docs/rest.md), says `a.py`:\n\n- one\n- two.\n\n"
-        "| table | is |\n|---|---|\n| not | prose |\n\n```python\ncode\n```\n\n![picture](a.png)\n"
-    )
-    assert prose(page) == "It takes 35 s of rest, says code.\none.\ntwo."

@@ -49,18 +49,11 @@ _RESTING = {
         }
     ],
 }
-FORMS = {
+_OWN_FORM = {"document": True, "threshold": 0}
+FORMS: dict[str, dict] = {
     "coarse, then fine (the default)": {},
-    "the document's own form, steps of 50 mdps": {
-        "document": True,
-        "coarse_dps": 0.05,
-        "threshold": 0,
-    },
-    "the document's own form, steps of 12.5 mdps": {
-        "document": True,
-        "coarse_dps": 0.0125,
-        "threshold": 0,
-    },
+    "the document's own form, steps of 50 mdps": {**_OWN_FORM, "coarse_dps": 0.05},
+    "the document's own form, steps of 12.5 mdps": {**_OWN_FORM, "coarse_dps": 0.0125},
 }
 FLICKERS_MDPS = (0, 1, 2, 4)
 SCENES = ("rests-30", "short-rests", "turntable")
