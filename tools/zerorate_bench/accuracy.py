@@ -129,18 +129,20 @@ def day(advance: Callable[[float], None] = lambda n: None) -> Figures:
     return found
 
 
-def steps(seeds: Sequence[int] = SEEDS) -> int:
-    """How often `accuracy` advances."""
+def steps(quick: bool) -> int:
+    """How often `run` advances."""
     folder = data_folder()
     logs = len(recordings(folder)) if folder else 0
-    return len(DAY) + len(SCENARIOS) * len(seeds) * len(PEERS) + logs
+    return len(DAY) + len(SCENARIOS) * len(_seeds(quick)) * len(PEERS) + logs
 
 
-def accuracy(
-    advance: Callable[[float], None] = lambda n: None, seeds: Sequence[int] = SEEDS
-) -> dict[str, Any]:
+def _seeds(quick: bool) -> Sequence[int]:
+    return SEEDS[:1] if quick else SEEDS
+
+
+def run(quick: bool, advance: Callable[[float], None]) -> dict[str, Any]:
     """All figures, mdps: day_rms_mdps, session_2_rms_mdps, real_rms_mdps (None without data)."""
-    folder = data_folder()
+    folder, seeds = data_folder(), _seeds(quick)
     found: dict[str, Any] = {
         "machine": machine(),
         "seeds": list(seeds),

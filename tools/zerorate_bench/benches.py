@@ -5,27 +5,22 @@ import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from importlib import import_module
+from inspect import signature
 from pathlib import Path
 from typing import Any
-
-_QUICK_HOURS = (1.0, 4.0)
-_QUICK_SEEDS = (1,)
 
 
 @dataclass(frozen=True)
 class Bench:
     """help: in a line; module: below zerorate_bench, loaded when the bench is run.
 
-    found: the figures, of that module, the arguments and what is told of steps done; steps: how
-    many, None where nobody knows; text: the module's function that makes figures Markdown; options:
-    flag -> what argparse takes for it; judged: the exit code says what the module's `passed` does.
+    The module's `run` makes the figures, `in_markdown` the text of them; `steps`, if it has one,
+    says how often `run` calls `advance`. `run` and `steps` take the options by their names.
+    options: flag -> what argparse takes for it; judged: the exit code says what `passed` does.
     """
 
     help: str
     module: str
-    found: Callable[[Any, argparse.Namespace, Callable[[float], None]], Any]
-    steps: Callable[[Any, argparse.Namespace], float | None] = lambda bench, a: None
-    text: str = "in_markdown"
     options: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     judged: bool = False
 
@@ -50,12 +45,13 @@ def _run(bench: Bench, arguments: argparse.Namespace) -> int:
     from zerorate_tools.recordings.atomic import written_beside
 
     module = import_module(f"zerorate_bench.{bench.module}")
-    with progress("measuring", bench.steps(module, arguments)) as advance:
-        found = bench.found(module, arguments, advance)
+    steps = _called(module.steps, arguments) if hasattr(module, "steps") else None
+    with progress("measuring", steps) as advance:
+        found = _called(module.run, arguments, advance=advance)
     if getattr(arguments, "page", None):
         text = module.renewed(arguments.page.read_text(encoding="utf-8"), found["figures"])
     else:
-        text = getattr(module, bench.text)(found)
+        text = module.in_markdown(found)
     if arguments.out is None:
         print(text)
     else:
@@ -67,27 +63,10 @@ def _run(bench: Bench, arguments: argparse.Namespace) -> int:
     return 1 if bench.judged and not module.passed(found) else 0
 
 
-def _hours(arguments: argparse.Namespace) -> tuple[float, ...]:
-    from .replay_speed import HOURS
-
-    return _QUICK_HOURS if arguments.quick else HOURS
-
-
-def _seeds(arguments: argparse.Namespace) -> tuple[int, ...]:
-    from .accuracy import SEEDS
-
-    return _QUICK_SEEDS if arguments.quick else SEEDS
-
-
-def _recordings(arguments: argparse.Namespace) -> Path:
-    from zerorate_tools.errors import ZerorateError
-
-    from .public_data import data_folder
-
-    folder = arguments.data or data_folder()
-    if folder is None or not Path(folder).is_dir():
-        raise ZerorateError("no real recordings; name their folder with --data DIR")
-    return Path(folder)
+def _called(function: Callable[..., Any], arguments: argparse.Namespace, **more: Any) -> Any:
+    """What a function returns of the options that it takes."""
+    options = {**vars(arguments), **more}
+    return function(**{n: options[n] for n in signature(function).parameters if n in options})
 
 
 _QUICK = {"--quick": {"action": "store_true", "help": "short recordings and one seed"}}
@@ -109,47 +88,25 @@ def _number(default: float, what: str) -> dict[str, Any]:
 
 _PROCESSES = {"--processes": _number(2, "at once")}
 BENCHES = {
-    "accuracy": Bench(
-        *("the bias error, beside other filters'", "accuracy"),
-        lambda bench, a, advance: bench.accuracy(advance, _seeds(a)),
-        lambda bench, a: bench.steps(_seeds(a)),
-        options=_QUICK,
-    ),
-    "boards": Bench(
-        *("memory, time and numbers on an emulated Pico", "boards"),
-        lambda bench, a, advance: bench.measure(advance),
-        lambda bench, a: bench.STEPS,
-    ),
+    "accuracy": Bench("the bias error, beside other filters'", "accuracy", _QUICK),
+    "boards": Bench("memory, time and numbers on an emulated Pico", "boards.measuring"),
     "compare": Bench(
         "what `compare` says of real recordings; exit code 1 if the truth contradicts it",
-        "compared",
-        lambda bench, a, advance: bench.run(_recordings(a), advance),
-        options=_RECORDINGS,
-        judged=True,
+        *("compared", _RECORDINGS, True),
     ),
-    "cost": Bench(
-        *("instructions, heap, sizes and replay speed", "cost_report"),
-        lambda bench, a, advance: bench.cost(advance, _hours(a)),
-        lambda bench, a: bench.STEPS,
-        options=_QUICK,
-    ),
+    "cost": Bench("instructions, heap, sizes and replay speed", "cost_report", _QUICK),
     "deceived": Bench(
         *("how often it is certain of a wrong bias when turns look like one", "deceived"),
-        lambda bench, a, advance: bench.run(a.seeds, advance),
-        lambda bench, a: bench.steps(a.seeds),
-        options={"--seeds": _number(50, "runs of each world")},
+        {"--seeds": _number(50, "runs of each world")},
     ),
     "faults": Bench(
         "every fault of a bus and every cut of a write; exit code 1 if one goes unnoticed",
         "faults",
-        lambda bench, a, advance: bench.run(),
         judged=True,
     ),
     "fleet": Bench(
         *("many devices at once, and what a prior gains", "fleet"),
-        lambda bench, a, advance: bench.run(sorted(a.devices), advance=advance),
-        lambda bench, a: bench.steps(a.devices, bench.WORKERS),
-        options={
+        {
             "--devices": {
                 **{"type": int, "nargs": "+", "metavar": "N", "default": (100, 500, 2000)},
                 "help": "sizes of the fleet (100 500 2000)",
@@ -157,48 +114,32 @@ BENCHES = {
         },
     ),
     "heading": Bench(
-        *("heading lost in motion, without and with the matrix of `close`", "heading"),
-        lambda bench, a, advance: bench.run(a.data, advance),
-        options=_FOLDERS,
+        "heading lost in motion, without and with the matrix of `close`", "heading", _FOLDERS
     ),
     "heading-simulated": Bench(
         *("errors of scale and axes in five kinds of simulated motion", "heading_simulated"),
-        lambda bench, a, advance: bench.run(a.devices, a.processes, a.resume, advance),
-        lambda bench, a: bench.steps(a.devices),
-        options={"--devices": _number(80, "devices of each kind"), **_PROCESSES, **_RESUME},
+        {"--devices": _number(80, "devices of each kind"), **_PROCESSES, **_RESUME},
     ),
     "heading-size": Bench(
         "time and memory of `close` in motion; exit code 1 if too much",
         "heading_size",
-        lambda bench, a, advance: bench.run(),
         judged=True,
     ),
     "import": Bench(
-        "logs of other tools: right or refused; exit code 1 if one is wrong",
-        "foreign_imports",
-        lambda bench, a, advance: bench.run(a.only, advance),
-        lambda bench, a: bench.steps(),
-        options={"--only": {"metavar": "TEXT", "default": "", "help": "logs whose row holds it"}},
+        *("logs of other tools: right or refused; exit code 1 if one is wrong", "foreign_imports"),
+        {"--only": {"metavar": "TEXT", "default": "", "help": "logs whose row holds it"}},
         judged=True,
     ),
     "import-size": Bench(
-        *("time and memory to import a huge CSV", "foreign_imports"),
-        lambda bench, a, advance: bench.run_import_size(a.gb, a.folder, advance),
-        lambda bench, a: 2,
-        "in_words",
+        *("time and memory to import a huge CSV", "import_size"),
         {
             "--gb": _number(1.0, "its size"),
             "--folder": {"type": Path, "metavar": "DIR", "help": "with room for 2.5 times that"},
         },
     ),
     "loop": Bench(
-        *("what `close` finds, and what it finds wrongly", "loop"),
-        lambda bench, a, advance: bench.run(
-            *(a.nulls, a.seeds, a.processes),
-            **{name: getattr(a, name) for name in ("data", "resume", "rows")},
-        ),
-        text="markdown",
-        options={
+        *("what `close` finds, and what it finds wrongly", "loop.trials"),
+        {
             "--nulls": _number(200, "recordings of nothing"),
             "--seeds": _number(20, "devices an effect"),
             **_PROCESSES,
@@ -208,47 +149,25 @@ BENCHES = {
             **_RESUME,
         },
     ),
-    "motion": Bench(
-        *("the bias learned in motion, beside vqf's", "motion_table"),
-        lambda bench, a, advance: bench.run(a.data),
-        options=_BROAD,
-    ),
+    "motion": Bench("the bias learned in motion, beside vqf's", "motion_table", _BROAD),
     "own-axes": Bench(
         *("scale and axes that the filter in motion finds by itself", "own_axes"),
-        lambda bench, a, advance: bench.run(a.devices, a.data, advance),
-        lambda bench, a: 2 * len(bench.WORLDS),
-        options={"--devices": _number(12, "simulated devices a row"), **_FOLDERS},
+        {"--devices": _number(12, "simulated devices a row"), **_FOLDERS},
     ),
-    "real": Bench(
-        *("`close` on real recordings, each alone", "loop.real"),
-        lambda bench, a, advance: bench.real_rows(_recordings(a)),
-        text="in_words",
-        options=_RECORDINGS,
-    ),
+    "real": Bench("`close` on real recordings, each alone", "loop.real", _RECORDINGS),
     "real-motion": Bench(
-        *("the bias at the end of real motion, beside other filters'", "real_motion"),
-        lambda bench, a, advance: bench.run(a.data, advance),
-        options=_FOLDERS,
+        "the bias at the end of real motion, beside other filters'", "real_motion", _FOLDERS
     ),
     "service": Bench(
         *("`zerorate run` under faults, kills, full disks", "service"),
-        lambda bench, a, advance: bench.run(a.hours, a.faults),
-        text="in_words",
-        options={"--hours": _number(24.0, "simulated"), "--faults": _number(1000, "how many")},
+        {"--hours": _number(24.0, "simulated"), "--faults": _number(1000, "how many")},
     ),
     "singles": Bench(
         "`close` on one or two simulated recordings: does it make anything worse?",
         "loop.singles",
-        lambda bench, a, advance: bench.run_singles(a.devices, a.processes, a.resume, advance),
-        lambda bench, a: a.devices,
-        "in_words",
         {"--devices": _number(400, "devices"), **_PROCESSES, **_RESUME},
     ),
     "variants": Bench(
-        "`close` on real recordings that were cut or damaged",
-        "loop.variants",
-        lambda bench, a, advance: bench.variant_rows(_recordings(a), advance),
-        text="in_words",
-        options=_RECORDINGS,
+        "`close` on real recordings that were cut or damaged", "loop.variants", _RECORDINGS
     ),
 }

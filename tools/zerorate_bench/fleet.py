@@ -17,7 +17,6 @@ from zerorate_tools.simulate import simulate
 
 from .tables import machine_line, table
 
-SIZES = (100, 500, 2000)
 WORKERS = (1, 2)
 _PER_TASK = 50
 
@@ -29,31 +28,27 @@ MINUTES = 3.0
 ODR_HZ = 25.0
 
 
-def run(
-    sizes: Sequence[int] = SIZES,
-    workers: Sequence[int] = WORKERS,
-    minutes: float = MINUTES,
-    advance: Callable[[float], None] = lambda n: None,
-) -> dict[str, Any]:
+def run(devices: Sequence[int], advance: Callable[[float], None]) -> dict[str, Any]:
     """Simulate the largest fleet once, run each size on each number of workers, and reckon on.
 
-    advance: called with devices done, of `steps(sizes, workers)` in all.
+    advance: called with devices done, of `steps(devices)` in all.
     """
+    sizes = sorted(devices)
     with tempfile.TemporaryDirectory(prefix="zerorate-bench-") as folder:
         data = Path(folder) / "data"
-        _simulate(max(sizes), data, minutes, advance)
+        _simulate(max(sizes), data, advance)
         size_bytes = sum(path.stat().st_size for path in data.rglob("*.parquet")) / max(sizes)
         # the first run of all compiles the kernels, which is no part of the figures
-        fleet(devices_of([data])[:2], Path(folder) / "warm", workers=max(workers))
+        fleet(devices_of([data])[:2], Path(folder) / "warm", workers=max(WORKERS))
         rows, largest = [], Fleet()
-        for number, count in [(n, w) for n in sizes for w in workers]:
+        for number, count in [(n, w) for n in sizes for w in WORKERS]:
             out = Path(folder) / f"out-{number}-{count}"
-            tried = minutes if (number, count) == (sizes[-1], workers[-1]) else None
-            devices = devices_of([data])[:number]
-            largest = fleet(devices, out, workers=count, minutes=tried, advance=advance)
+            tried = MINUTES if (number, count) == (sizes[-1], WORKERS[-1]) else None
+            every = devices_of([data])[:number]
+            largest = fleet(every, out, workers=count, minutes=tried, advance=advance)
             rows.append(_row(number, count, largest))
     return {
-        "minutes": minutes,
+        "minutes": MINUTES,
         "odr_hz": ODR_HZ,
         "bytes_per_recording": size_bytes,
         "scaling": rows,
@@ -62,14 +57,14 @@ def run(
     }
 
 
-def steps(sizes: Sequence[int], workers: Sequence[int]) -> int:
+def steps(devices: Sequence[int]) -> int:
     """Devices simulated and run in all."""
-    return max(sizes) + len(workers) * sum(sizes)
+    return max(devices) + len(WORKERS) * sum(devices)
 
 
-def _simulate(number: int, data: Path, minutes: float, advance: Callable[[float], None]) -> None:
+def _simulate(number: int, data: Path, advance: Callable[[float], None]) -> None:
     batches = [list(range(i, min(i + _PER_TASK, number))) for i in range(0, number, _PER_TASK)]
-    write = partial(write_devices, data, minutes)
+    write = partial(write_devices, data, MINUTES)
     with cluster(workers=os.cpu_count()) as client:
         for batch, failure in run_all(client, write, batches):
             if failure is not None:

@@ -36,10 +36,10 @@ GROUPS = (("01", "02", "06", "12", "16", "24"), ("21", "29", "30"))
 LIMITS = (0.7, 2.5)
 
 
-def run(folders: list[Path], advance: Callable[[float], None] = lambda n: None) -> dict:
+def run(data: list[Path], advance: Callable[[float], None] = lambda n: None) -> dict:
     """Trial -> degrees before and after, fitted on the other trials of its group and on its own
     first half; and whether both groups together are refused. Raises ZerorateError."""
-    every = {t.name[:2]: t for folder in folders for t in trials(folder)}
+    every = {t.name[:2]: t for folder in data for t in trials(folder)}
     with TemporaryDirectory() as scratch:
         moving = {n: moving_in(t, Path(scratch) / f"{n}.parquet") for n, t in every.items()}
     found: dict = {"others": {}, "halves": {}, **_refused(list(moving.values()))}

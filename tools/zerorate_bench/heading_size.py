@@ -31,9 +31,9 @@ class Size:
 SIZES = (Size(6, 180.0, 286.0, 0.2, 15.0, 1.0), Size(1, 8 * _HOUR_S, 100.0, 0.5, 60.0, 1.0))
 
 
-def run(sizes=SIZES) -> list[dict]:
+def run() -> list[dict]:
     """Seconds of processor and GB of `zerorate close` for each size, and what it found."""
-    return [_measured(size) for size in sizes]
+    return [_measured(size) for size in SIZES]
 
 
 def write(size: Size, folder: Path) -> None:

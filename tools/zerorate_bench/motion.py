@@ -6,7 +6,6 @@ zerorate bench motion --data FOLDER/broad --json motion.json
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from os import PathLike
 from pathlib import Path
 
 import numpy as np
@@ -154,14 +153,14 @@ def _cost() -> dict[str, dict[str, float]] | str:
         return str(error)
 
 
-def run(data: str | PathLike[str] | None = None) -> dict:
+def run(data: Path | None = None) -> dict:
     """Measure and return all figures.
 
     data: the folder of BROAD's .mat files; without it only the simulated table is made.
     Raises ZerorateError for a folder without one.
     """
     ways = peers()
-    found: dict = {} if data is None else {"broad": on_broad(ways, Path(data))}
+    found: dict = {} if data is None else {"broad": on_broad(ways, data)}
     found |= {"simulated": simulated(ways), "flicker": by_flicker()}
     return found | {"settling": settling(), "cost": _cost()}
 

@@ -31,7 +31,7 @@ _WRONG, _SIGMAS = 0.002, 3.0
 _STATES = range(3, 12)
 
 
-def run(devices: int, folders: Sequence[Path], advance: Callable[[float], None]) -> dict:
+def run(devices: int, data: Sequence[Path], advance: Callable[[float], None]) -> dict:
     """Rows of `devices` in each world, with errors and without, and of each trial of BROAD."""
     found: dict = {"devices": devices, "simulated": {}}
     for world in WORLDS:
@@ -39,7 +39,12 @@ def run(devices: int, folders: Sequence[Path], advance: Callable[[float], None])
             rows = [one_device(Case(world, i, off)) for i in range(devices)]
             found["simulated"][f"{world}, {'1 %' if off else 'no'} errors"] = rows
             advance(1)
-    return found | {"broad": _on_broad(folders)}
+    return found | {"broad": _on_broad(data)}
+
+
+def steps() -> int:
+    """How often `run` advances."""
+    return 2 * len(WORLDS)
 
 
 def one_device(case: Case) -> dict[str, float]:

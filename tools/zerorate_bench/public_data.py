@@ -5,6 +5,7 @@ import os
 from pathlib import Path
 from typing import Any
 
+from zerorate_tools.errors import ZerorateError
 from zerorate_tools.importers import Options, parsed_mapping
 
 _MPU = {"sensor": "MPU-6050", "gyro_lsb_per_dps": 131.0, "accel_lsb_per_g": 16384.0}
@@ -85,6 +86,14 @@ def data_folder() -> Path | None:
     named = os.environ.get("ZERORATE_DATA")
     folder = Path(named) if named else Path(__file__).resolve().parents[3] / "shared" / "data"
     return folder if folder.is_dir() else None
+
+
+def recordings_folder(named: Path | None) -> Path:
+    """The folder that is named, or that of `data_folder`. Raises ZerorateError without one."""
+    folder = named or data_folder()
+    if folder is None or not folder.is_dir():
+        raise ZerorateError("no real recordings; name their folder with --data DIR")
+    return folder
 
 
 def recordings(folder: Path) -> list[Path]:

@@ -52,11 +52,11 @@ def ways() -> dict[str, Peer]:
     return {OURS: Decision(), "vqf": vqf_default, "imufusion": fusion, NONE: uncorrected}
 
 
-def run(folders: Sequence[Path], advance: Callable[[float], None] = lambda n: None) -> dict:
+def run(data: Sequence[Path], advance: Callable[[float], None] = lambda n: None) -> dict:
     """Start -> way -> trial -> errors, mdps, one for each place where it begins; under "optics"
     trial -> how far the bias in motion is from the one at rest by the optics, and its one sigma.
     Raises ZerorateError for a folder without a trial."""
-    every = {trial.name: trial for folder in folders for trial in trials(folder)}
+    every = {trial.name: trial for folder in data for trial in trials(folder)}
     found: dict = {start: {way: {} for way in (OURS, TOLD, *ways())} for start in STARTS}
     found[OPTICS] = {}
     shown = matrices_of(every)

@@ -242,7 +242,7 @@ def _strike(kind: str, luck: random.Random, chip: FakeMPU6050, bus: FakeI2C, dis
         raise Killed
 
 
-def in_words(found: dict) -> str:
+def in_markdown(found: dict) -> str:
     """A few lines for a terminal."""
     faults = ", ".join(f"{count} {kind}" for kind, count in sorted(found["faults"].items()))
     return (

@@ -148,7 +148,6 @@ _SIGN = "kept"
 #: An image with this firmware frozen into it, where the boards' folder has one.
 _FROZEN = "FROZEN-*.bin"
 _HEAPS = (24 << 10, 88 << 10)
-STEPS = 1 + len(CONFIGURATIONS) + 8
 
 _KB = 1024
 LIMITS = (
@@ -165,7 +164,12 @@ LIMITS = (
 )
 
 
-def measure(advance: Callable[[float], None] = lambda n: None) -> dict[str, Any]:
+def steps() -> int:
+    """How often `run` advances."""
+    return 1 + len(CONFIGURATIONS) + 8
+
+
+def run(advance: Callable[[float], None]) -> dict[str, Any]:
     """The figures, from an emulated Pico. Raises MissingRuntime where none can be had."""
     parts = find_pico()
     found: dict[str, Any] = {"firmware": parts.firmware.name}

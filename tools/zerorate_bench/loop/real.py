@@ -20,7 +20,7 @@ from zerorate_tools.loop.verify.judge import rms_dps, scored
 from zerorate_tools.loop.verify.run_kernels import run_and_prune
 from zerorate_tools.model.term import Term
 
-from ..public_data import CLOSED_ALONE, CLOSED_TOGETHER, told_of
+from ..public_data import CLOSED_ALONE, CLOSED_TOGETHER, recordings_folder, told_of
 from ..tables import machine_line, table_of
 
 #: Of the error before, and of a cubic's, that the error after may be; of a cubic's, the median.
@@ -28,6 +28,11 @@ _MOST_OF_BEFORE, _MOST_OF_CUBIC, _MEDIAN = 1.0, 1.05, 0.7
 #: No temperature of a part is so far.
 _FAR_DEGC = 1e4
 _POWERS, _MOST_BENDS = 7, 12
+
+
+def run(data: Path | None) -> dict[str, dict]:
+    """As `real_rows`, of the folder that is named or found."""
+    return real_rows(recordings_folder(data))
 
 
 def real_rows(data: Path) -> dict[str, dict]:
@@ -85,7 +90,7 @@ def _noise(analysis) -> float:
     return round(float(1e3 * np.sqrt((np.vstack(changes) ** 2).mean() / 6)), 2)
 
 
-def in_words(rows: dict[str, dict]) -> str:
+def in_markdown(rows: dict[str, dict]) -> str:
     """The page of `zerorate bench real`: what is missed first, then every recording."""
     worse = [n for n, r in rows.items() if r["after_mdps"] > _MOST_OF_BEFORE * r["before_mdps"]]
     ratios = {n: r["of_cubic"] for n, r in rows.items() if r["of_cubic"] != ""}

@@ -208,18 +208,23 @@ def single_figures(singles: list[Single]) -> list[Figure]:
     return rows
 
 
-def run_singles(
-    number: int, processes: int, resume: Path | None, advance: Callable[[float], None]
+def steps(devices: int) -> int:
+    """How often `run` advances."""
+    return devices
+
+
+def run(
+    devices: int, processes: int, resume: Path | None, advance: Callable[[float], None]
 ) -> dict:
     """So many devices, of every kind alike: their figures, and what became of each, as plain
     values. resume: as of `outcomes`."""
-    each = list(outcomes(look_at_single, range(number), processes, resume, advance))
+    each = list(outcomes(look_at_single, range(devices), processes, resume, advance))
     singles = [Single(**row) for row in each]
     figures = [f.to_dict() for f in single_figures(singles)]
-    return {"devices": number, "figures": figures, "each": each}
+    return {"devices": devices, "figures": figures, "each": each}
 
 
-def in_words(result: dict) -> str:
+def in_markdown(result: dict) -> str:
     """The figures as Markdown."""
     lines = [f"# One recording or two, of {result['devices']} simulated devices", ""]
     lines += ["`zerorate bench singles` wrote this page. " + machine_line(), ""]

@@ -120,7 +120,7 @@ def run(
     rows: str | None = None,
     advance: Callable[[float], None] = lambda n: None,
 ) -> dict:
-    """Run it and return the figures and tables as plain values; `markdown` makes them readable.
+    """Run it and return the figures and tables as plain values; `in_markdown` makes them readable.
 
     nulls: devices of each kind of nothing; seeds: devices an effect; data: folder of the real
     recordings, else ZERORATE_DATA, else none; resume: a file of outcomes, one a line, that a run
@@ -169,7 +169,7 @@ def _examples(outcomes: list[Outcome]) -> list[list]:
     return [[o.device.row, o.device.seed, o.found, o.confidence] for o in nothing[:_MOST_EXAMPLES]]
 
 
-def markdown(result: dict) -> str:
+def in_markdown(result: dict) -> str:
     """The figures as Markdown, the missed ones first."""
     missed = [f["name"] for f in result["figures"] if f["met"] is False]
     limits = sum(f["met"] is not None for f in result["figures"])
@@ -184,7 +184,7 @@ def markdown(result: dict) -> str:
 
 
 def renewed(page: str, figures: list[dict]) -> str:
-    """A page of `markdown` with these figures in the place of its own of the same name, or after
+    """A page of `in_markdown` with these figures in the place of its own of the same name, or after
     the last where it has none, and its head told anew."""
     lines = [*page.splitlines(), ""]
     for line in figure_table(figures).strip().splitlines()[2:]:

@@ -25,7 +25,7 @@ from zerorate_tools.recordings.checks import GAP
 from zerorate_tools.recordings.recording import ACCEL, GYRO, TEMP, TIME
 from zerorate_tools.replay.samples import frames_in_batches
 
-from ..public_data import CLOSED_ALONE, told_of
+from ..public_data import CLOSED_ALONE, recordings_folder, told_of
 from ..tables import machine_line, table, table_of
 from .real import rms_mdps
 
@@ -69,15 +69,15 @@ VARIANTS: dict[str, Callable[[Recording], list[Recording]]] = {
 }
 
 
-def variant_rows(data: Path, advance: Callable[[float], None] = lambda n: None) -> list[dict]:
+def run(data: Path | None, advance: Callable[[float], None]) -> list[dict]:
     """A row for each recording and variant: before and after in mdps where it was not fitted, what
     was found, steps listed; `refused` says why there is none.
     """
-    rows = []
+    rows, folder = [], recordings_folder(data)
     with tempfile.TemporaryDirectory() as scratch:
         for name in CLOSED_ALONE:
-            if (data / name).exists():
-                recording = _imported(data / name, Path(scratch))
+            if (folder / name).exists():
+                recording = _imported(folder / name, Path(scratch))
                 for variant, made in _of(recording, Path(scratch)).items():
                     row = {"recording": Path(name).name, "variant": variant}
                     rows.append(row | _looked_at(recording, variant, made, Path(scratch)))
@@ -182,7 +182,7 @@ def _seen(own, other) -> np.ndarray:
     return (degc > known.min() - _NEAR_DEGC) & (degc < known.max() + _NEAR_DEGC)
 
 
-def in_words(rows: list[dict]) -> str:
+def in_markdown(rows: list[dict]) -> str:
     """The page of `zerorate bench variants`: how many of each variant are worse, then every row."""
     lines = [
         "# Real recordings cut, bereft of a sensor, and with a step",
