@@ -31,19 +31,15 @@ _POWERS, _MOST_BENDS = 7, 12
 
 
 def run(data: Path | None) -> dict[str, dict]:
-    """As `real_rows`, of the folder that is named or found."""
-    return real_rows(recordings_folder(data))
-
-
-def real_rows(data: Path) -> dict[str, dict]:
     """Name -> figures in mdps (RMS over the axes, held out) and what was found, of every recording
     alone and of those of one device together.
 
     before, after: by the firmware's own kernels; cubic: by double precision, on the same pieces.
+    data: the recordings' folder, else as of `recordings_folder`.
     """
-    rows = {}
-    every = {Path(name).name: [data / name] for name in CLOSED_ALONE if (data / name).exists()}
-    every |= {name: sorted(data.glob(pattern)) for name, pattern in CLOSED_TOGETHER.items()}
+    rows, folder = {}, recordings_folder(data)
+    every = {Path(name).name: [folder / name] for name in CLOSED_ALONE if (folder / name).exists()}
+    every |= {name: sorted(folder.glob(pattern)) for name, pattern in CLOSED_TOGETHER.items()}
     with tempfile.TemporaryDirectory() as scratch:
         for name, paths in every.items():
             if paths:

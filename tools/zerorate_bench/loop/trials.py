@@ -15,10 +15,10 @@ from zerorate_tools.recordings import Recording, Scales, write_recording
 from ..children import close_cost
 from ..public_data import data_folder
 from ..tables import machine, machine_line, outcomes, table
+from . import real
 from .devices import Device, devices
 from .figures import Figure, figures
 from .files import ROWS, file_devices, look_at_files
-from .real import real_rows, recordings_table
 from .run_trial import Outcome, run_trial
 from .simulated import FOLDER, write_blocks
 
@@ -140,7 +140,7 @@ def run(
     result: dict = {"devices": len(seen), "machine": machine()}
     result["cpu_s_a_device"] = sum(o.cpu_s for o in seen) / max(len(seen), 1)
     if folder and folder.is_dir() and not rows:
-        result["real_recordings"] = real_rows(folder)
+        result["real_recordings"] = real.run(folder)
     result["figures"] = [f.to_dict() for f in found]
     result["false_alarms"] = _examples(seen)
     return result
@@ -179,7 +179,7 @@ def in_markdown(result: dict) -> str:
     parts += [f"{head}: {'; '.join(missed)}." if missed else "Every figure is reached.", ""]
     parts.append(figure_table(result["figures"]))
     if "real_recordings" in result:
-        parts += ["## Real recordings", "", recordings_table(result["real_recordings"])]
+        parts += ["## Real recordings", "", real.recordings_table(result["real_recordings"])]
     return "\n".join(parts)
 
 
