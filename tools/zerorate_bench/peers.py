@@ -10,6 +10,7 @@ firmware's two sources that need no rest, on its own; a Decision is the firmware
 import ctypes
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -45,16 +46,6 @@ _STEP_DEGC = 0.5
 _ABOUT_DEGC = 35.0
 _MOTION_WORDS = MOTION.MOTION_BIAS_Q8, MOTION.MOTION_QUALITY_Q8
 _GRAVITY_WORDS = GRAVITY.GRAVITY_BIAS_Q8, GRAVITY.GRAVITY_QUALITY_Q8
-
-
-def px4_cubic(sessions: Sequence[Given]) -> list[NDArray[np.float64]]:
-    """Each session's bias (n, 3), dps, by PX4's rules."""
-    return _fitted_on_the_first(sessions, _px4_points)
-
-
-def ardupilot_cubic(sessions: Sequence[Given]) -> list[NDArray[np.float64]]:
-    """Each session's bias (n, 3), dps, by ArduPilot's rules."""
-    return _fitted_on_the_first(sessions, _ardupilot_points)
 
 
 Points = Callable[[NDArray, NDArray], tuple[NDArray, NDArray]]
@@ -95,6 +86,11 @@ def _step_means(temp: NDArray, rates: NDArray, steps: NDArray) -> tuple[NDArray,
     filled = counts > 0
     means = [np.bincount(steps, values)[filled] / counts[filled] for values in (temp, *rates.T)]
     return means[0], np.stack(means[1:], axis=1)
+
+
+#: Each session's bias (n, 3), dps, by PX4's rules and by ArduPilot's.
+px4_cubic = partial(_fitted_on_the_first, points=_px4_points)
+ardupilot_cubic = partial(_fitted_on_the_first, points=_ardupilot_points)
 
 
 class Judged(ABC):

@@ -5,10 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from zerorate import Corrector
 from zerorate_tools.replay.engines import engine
 from zerorate_tools.replay.replaying import corrector_for
-from zerorate_tools.replay.samples import Frames, frames_in_batches
+from zerorate_tools.replay.samples import frames_in_batches
 from zerorate_tools.simulate import simulate
 
 SCENARIO = "warm-up-b"
@@ -39,15 +38,8 @@ def workload(samples: int = 2 * CYCLE) -> Workload:
     batches = list(frames_in_batches(recording, rows=_BEFORE))
     for _ in engine("native").run(corrector, batches[:1]):
         pass
-    return Workload(_rows(batches[1])[:samples], _words(corrector.settings), _state(corrector))
-
-
-def _rows(batch: Frames) -> NDArray[np.int32]:
-    return np.c_[batch.dt_us, batch.frames].astype(np.int32)
-
-
-def _state(corrector: Corrector) -> NDArray[np.int32]:
-    return _words(corrector.state)
+    rows = np.c_[batches[1].dt_us, batches[1].frames].astype(np.int32)
+    return Workload(rows[:samples], _words(corrector.settings), _words(corrector.state))
 
 
 def _words(values: array) -> NDArray[np.int32]:
