@@ -10,6 +10,8 @@ from hypothesis import strategies as st
 from zerorate_tools.errors import BadRecording
 from zerorate_tools.importers import Options, parsed_mapping
 from zerorate_tools.importers.importing import _gathered, _How, _ready
+from zerorate_tools.importers.samples.counts import Counts
+from zerorate_tools.importers.samples.gather import _are_held
 from zerorate_tools.importers.samples.spool import Runs
 from zerorate_tools.importers.tables.table import Chunk, Table
 from zerorate_tools.numbers import duration
@@ -159,7 +161,7 @@ def at_rest(n):
     ("rows", "second", "fits"),
     [
         *((101, 1000, True), (101, 900, True), (101, 890, False)),  # a tenth of it may be shared
-        *((101, -1100, True), (101, -1110, False), (101, 100, False), (99, 890, True)),
+        *((101, -1100, True), (101, -1110, False), (100, 0, False), (99, 0, True)),
     ],
 )
 def test_two_stretches_that_claim_the_same_time_are_two_recordings(rows, second, fits):
@@ -171,6 +173,57 @@ def test_two_stretches_that_claim_the_same_time_are_two_recordings(rows, second,
         return
     with pytest.raises(BadRecording, match=f"row {rows + 1}: "):
         runs.refuse_a_restart(PATH)
+
+
+@pytest.mark.parametrize(
+    ("counts", "said"),
+    [
+        *(
+            ([-32_768, 32_767], ""),
+            ([0] * 99 + [32_768], "negative ones"),
+            ([0, 65_535], "negative ones"),
+        ),
+        *(([0, 65_536], "no words of 16 bits"), ([-1, 32_768], "no words of 16 bits")),
+        *(([-32_769, 0], "no words of 16 bits"), ([0] * 98 + [65_000, 24_576], "negative ones")),
+        *(([0] * 98 + [24_576] * 2, ""), ([0] * 97 + [65_000] + [24_576] * 2, "around 32768")),
+        *(([0] * 98 + [40_959] * 2, "around 32768"), ([0] * 98 + [40_960] * 2, "negative ones")),
+        ([0] * 97 + [65_000] + [24_575] * 2, "negative ones"),
+    ],
+)
+def test_counts_are_words_of_16_bits_with_a_sign_or_without(counts, said):
+    seen, found = Counts(frozenset(["accel"])), []
+    for part in np.split(np.array(counts, float), [len(counts) // 2]):
+        columns = {"az": part, "level": part.copy()}
+        seen.signed(columns)
+        found += columns["az"].tolist()
+    try:
+        told = seen.notes(PATH)
+    except BadRecording as error:
+        told = [str(error)]
+    assert said in "".join(told) and bool(told) is bool(said)
+    assert found == [n - 65_536 if 32_768 <= n < 65_536 else n for n in counts]
+
+
+@pytest.mark.parametrize(
+    ("changes", "alone", "held"), [(79, 0, True), (80, 0, False), (50, 25, True), (50, 26, False)]
+)
+def test_rates_that_often_stand_still_together_are_read_too_often(changes, alone, held):
+    step = np.arange(100)
+    at = np.r_[0, np.cumsum(step % 2 > 0 if changes == 50 else step < changes)]
+    rates = np.sin(np.tile(at, (3, 1)) + 1.0)
+    rates[2, : 2 * alone] = 7.0  # so often the other two change alone
+    assert _are_held(rates, 10.0 * np.arange(101)) is held
+    assert not _are_held(rates, np.zeros(101))  # no time goes on between them
+
+
+def test_of_a_long_log_the_beginning_of_each_piece_is_looked_at():
+    sizes, kept = [12_000, 500, 201, 200, 199], [10_000, 200, 200, 200, 199]
+    how = _How(Options(), (), None, 0)
+    opened = _gathered(table(at_rest(sum(sizes)), np.cumsum(sizes)[:-1].tolist()), PATH, how, None)
+    begins = np.cumsum([0, *sizes])
+    expected = [at + k for at, count in zip(begins, kept) for k in range(count)]
+    seen = opened.found.looked_at
+    assert (np.rint(seen["t_us"] / 10_000) == expected).all() and len(seen["ax"]) == len(expected)
 
 
 def test_a_log_in_very_many_pieces_is_read_as_in_one():
