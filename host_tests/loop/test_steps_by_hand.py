@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 from scipy.stats import chi2, gamma
 from zerorate_tools.loop.fit.free_curve import parts
-from zerorate_tools.loop.fit.regression import Regression
+from zerorate_tools.loop.fit.regression import Regression, predicted
+from zerorate_tools.loop.read.sessions import block_basis
 from zerorate_tools.loop.search import hysteresis, steps_first
 from zerorate_tools.loop.search import steps as listed
-from zerorate_tools.loop.search.catalogue import Candidate
+from zerorate_tools.loop.search.catalogue import Candidate, lags
 from zerorate_tools.loop.search.steps import (
     Step,
     standing,
@@ -178,6 +179,27 @@ def test_what_was_taken_beside_a_step_may_make_it_by_its_timing():
     session.sources["j"][:] = np.where(np.arange(BLOCKS) >= BLOCKS - 1, 1.0, 0.0)
     last = replace(step, block=BLOCKS)
     assert not listed._is_timing(regression, forms, np.array([[2.1, 0.0, 0.0]]), last)
+
+
+@pytest.mark.parametrize("size_dps", [0.0, 9.0])
+def test_lags_that_the_recordings_show_stay_and_all_others_are_held_at_zero(size_dps):
+    walk = np.cumsum(np.random.default_rng(3).normal(0, 1, BLOCKS))
+    session, line = noise(4, temp=25 + walk), Term("temp", centre=25.0)
+    late = block_basis(Term("temp", lag_s=135.0, lag_mode="difference"), session)
+    late = size_dps * (late - late.mean()) / late.std()
+    session.rate_dps += np.outer(late, [1.0, -1.0, 1.0])
+    regression = Regression([session])
+    shrunk = listed._shrunk_lags(regression, [line])
+    assert list(shrunk) == lags([session])
+    with regression.shrinking(shrunk):
+        told = regression.fit([line, *shrunk]).coefficients
+    made = predicted([*shrunk], told[1:], session)
+    made -= made.mean(axis=0)
+    if size_dps:
+        assert np.corrcoef(made[:, 0], late)[0, 1] > 0.999
+        assert made.std(axis=0) == pytest.approx([size_dps] * 3, rel=0.1)
+    else:
+        assert np.abs(made).max() < 0.05
 
 
 def test_a_form_of_several_terms_pays_for_those_that_a_step_does_not_have(sessions):
