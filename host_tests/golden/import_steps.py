@@ -115,7 +115,7 @@ def units():
             guessed.append(" ".join([str(unit), *told(why)]))
             offered.append(" ".join(told(guesses.ready_words(target, wanted, first))))
     counts = luck.integers(-99, 99, 400)
-    lsb = [*chip_steps._LSB_PER_DPS**-1.0, 0.14, 0.25, *np.geomspace(1e-6, 10, 30)]
+    lsb = [*chip_steps._LSB_PER_DPS.ravel() ** -1.0, 0.15, 0.25, *np.geomspace(1e-6, 10, 30)]
     scaled = [(unit, one / of * off) for one in lsb for unit, of in RATE_DPS.items()
               for off in (1.0, 1.002, 0.996)]  # fmt: skip
     steps = [f"{unit} {chip_steps.unit_by_steps(counts * step)}" for unit, step in scaled]

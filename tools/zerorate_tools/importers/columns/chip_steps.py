@@ -4,8 +4,8 @@ import numpy as np
 
 from .units import RATE_DPS
 
-#: Of gyroscopes of 16 bits, by their ranges, and of ST's, by their data sheets.
-_LSB_PER_DPS = np.r_[32768 / 125 / 2.0 ** np.arange(6), 1 / 0.00875 / 2.0 ** np.arange(4)]
+#: Of gyroscopes of 16 bits, by their ranges, and of ST's, by their data sheets: 125 to 4000 dps.
+_LSB_PER_DPS = np.r_[32768 / 125, 1 / 0.004375][:, None] / 2.0 ** np.arange(6)
 #: Logarithm of what printed digits and data sheets round; distances of levels that tell a step,
 #: those of so few steps; and what is a digit of floating point.
 _ONE_STEP, _LEVELS, _FEW_STEPS, _ROUNDED = 0.003, 16, 8, 1e-7
