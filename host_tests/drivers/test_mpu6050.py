@@ -6,23 +6,18 @@ from zerorate_fakes.registers import PARTS as FAKE_PARTS
 from zerorate_i2c.mpu6050 import FRESH, MPU6050, VERIFIED
 from zerorate_i2c.parts import PARTS
 
-FACTS = {  # reference: data sheets, temperature formula and FIFO size by WHO_AM_I
-    0x68: (340.0, 36.53, 1024),
-    0x70: (333.87, 21.0, 512),
-    0x71: (333.87, 21.0, 512),
-    0x73: (333.87, 21.0, 512),
-    0x74: (333.87, 21.0, 512),
-    0x78: (333.87, 21.0, None),
-    0x11: (326.8, 25.0, 1008),
-    0x12: (326.8, 25.0, 1008),
-    0xAF: (326.8, 25.0, 512),
-    0xAE: (326.8, 25.0, 512),
-    0xA6: (326.8, 25.0, 512),
-    0x98: (326.8, 25.0, 4096),
-    0x20: (326.8, 25.0, 1024),
-    0xA9: (326.8, 25.0, 512),
-    0x19: (326.8, 25.0, None),
+# temperature in LSB a degC and degC at 0, FIFO bytes -> WHO_AM_I; reference: data sheets
+_IDS = {
+    (340.0, 36.53, 1024): (0x68,),
+    (333.87, 21.0, 512): (0x70, 0x71, 0x73, 0x74),
+    (333.87, 21.0, None): (0x78,),
+    (326.8, 25.0, 1008): (0x11, 0x12),
+    (326.8, 25.0, 512): (0xAF, 0xAE, 0xA6, 0xA9),
+    (326.8, 25.0, 4096): (0x98,),
+    (326.8, 25.0, 1024): (0x20,),
+    (326.8, 25.0, None): (0x19,),
 }
+FACTS = {who_am_i: facts for facts, ids in _IDS.items() for who_am_i in ids}
 
 
 def test_every_id_is_one_whose_facts_are_known():
