@@ -120,6 +120,13 @@ def test_other_flags_are_none(by_hand, flag):
     assert by_hand.fifo.overflows == 0
 
 
+def test_nothing_lost_is_not_less_than_nothing(by_hand):
+    by_hand.frames(2)
+    by_hand.read(15000)
+    by_hand.fifo._lose(4000)  # before the newest delivered
+    assert by_hand.fifo.lost == 0
+
+
 def test_a_read_back_is_told_with_the_next_frame_though_nothing_waits(make):
     by_hand = make(check_every=40)
     told = []

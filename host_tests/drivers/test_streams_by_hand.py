@@ -303,7 +303,7 @@ def test_frames_come_out_of_pieces_of_any_length():
 def test_noise_before_and_between_is_skipped_and_counted():
     reader = FrameReader()
     frame = encode(MESSAGE, b"restarted")
-    noise = b"\xa5hello\xa5\x5a"
+    noise = b"\xa5hello\0\0\0\0\0\xa5\x5a"
     assert len(list(reader.feed(noise + frame + b"xyz" + frame))) == 2
     assert reader.skipped == len(noise) + 3
 

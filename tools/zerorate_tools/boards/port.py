@@ -183,7 +183,7 @@ class FrameReader:
     def feed(self, data: bytes) -> list[tuple[int, bytes]]:
         """Take data; (kind, payload) of every frame that is complete and right."""
         held, at, frames = self._held + data, 0, []
-        while at < len(held) and (end := _end(held, at)) <= len(held):
+        while (end := _end(held, at)) <= len(held):
             body, check = held[at : end - _CRC], held[end - _CRC : end]
             if end > at and crc32(body).to_bytes(_CRC, "little") == check:
                 frames.append((body[_KIND], body[_HEAD:]))
