@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from zerorate_bench.resampled import KINDS, digits, drawn, on_lines, timed
 from zerorate_tools.errors import BadRecording
 from zerorate_tools.importers.samples.bursts import evened
+from zerorate_tools.importers.samples.lines import _Seen
 from zerorate_tools.importers.samples.resampled import base_period
 from zerorate_tools.importers.samples.spool import Spool
 
@@ -91,6 +92,17 @@ def test_a_quiet_rest_of_few_digits_has_no_rows_between_readings(tmp_path):
 def test_a_log_that_was_resampled_is_refused(tmp_path, hz, printed):
     with pytest.raises(BadRecording, match="of a resampled log; import the log as the sensor"):
         read(tmp_path, resampled(table(), hz).round(printed))
+
+
+@pytest.mark.parametrize(
+    ("on", "longest", "near", "off", "are"),
+    [
+        *((1, 4, 0, 99, False), (2, 1, 0, 99, True), (1, 5, 0, 99, True)),
+        *((50, 9, 4, 100, True), (50, 9, 5, 100, False)),
+    ],
+)
+def test_lines_are_clear_and_more_than_chance_gives(on, longest, near, off, are):
+    assert _Seen(100, on, on, near, off, longest).are_lines is are
 
 
 @pytest.mark.parametrize("kind", KINDS)
