@@ -10,6 +10,7 @@ from zerorate_tools.loop.fit import line, single
 from zerorate_tools.loop.fit.free_curve import draw, is_curve, parts
 from zerorate_tools.loop.fit.intervals import block_bootstrap, rms
 from zerorate_tools.loop.fit.left_out import precision_of
+from zerorate_tools.loop.fit.noise import floor_dps, noise_of
 from zerorate_tools.loop.fit.regression import Regression
 from zerorate_tools.loop.fit.smooth import curve_of, matern, smooth
 from zerorate_tools.loop.fit.surrogates import NullRatios, null_ratios
@@ -472,6 +473,16 @@ def test_the_chance_of_an_irrelevant_candidate_is_chi_squared_s_where_its_ratios
     assert wide.variance == 100.0
     draws = np.random.default_rng(0).gamma(5 * 5 / 100, 100 / 5, 200_000)
     assert wide.survival(8.0) == pytest.approx((draws > 8).mean(), rel=0.03)
+
+
+def test_the_floor_is_the_lowest_deviation_up_to_a_third_of_the_longest_session():
+    made = [dense.made(1, 60), dense.made(2, 300)]
+    for s in made:
+        s.rate_dps[:] = np.random.default_rng(s.blocks).normal(size=(s.blocks, 3))
+    regression = Regression(made)
+    tau = np.geomspace(20.0, 300 * 20 / 3, 2000)
+    lowest = [n.deviation(tau).min() for n in noise_of(regression, [])]
+    assert floor_dps(regression, []) == pytest.approx(lowest, rel=1e-3)
 
 
 def test_surrogates_of_white_noise_reach_what_theory_says_and_a_true_effect_does_not_raise_them():

@@ -167,7 +167,7 @@ def cross_products(
 ) -> CrossProducts:
     """Products of prepared columns, a session an entry: y (N, A), z (N, J), x (N, K); of x each so
     many are one candidate."""
-    x = x if x is not None else [np.zeros((len(v), 0)) for v in y]
+    x = x or [v[:, []] for v in y]
     parts = []
     for w, ys, zs, xs in zip(whiteners, y, z, x):
         fixed = np.hstack([ys, zs])
