@@ -397,6 +397,26 @@ def test_a_form_of_a_hysteresis_pays_a_nat_for_each_width(monkeypatch, nats, cho
     assert found == (None if chosen is None else candidate(*forms[chosen], kind=hysteresis.KIND))
 
 
+def test_a_bend_gains_with_its_hysteresis_and_both_need_their_slots(monkeypatch):
+    bends, one = [(), (A,), (A, B), (C,)], SimpleNamespace(sessions=["s"])
+    gains = {(): 5.0, (A,): 3.0, (A, B): 9.0, (C,): 2.0}
+    alone = {(A,): [1.0, 1.1], (A, B): [0.0], (C,): [9.0]}
+    loops = {bend: None if bend == (C,) else replace(LOOP, family=str(bend)) for bend in bends}
+
+    def best(sessions, straight, bend, by_line):
+        assert (sessions, straight) == (["s"], [D])
+        return loops[bend], gains[bend]
+
+    monkeypatch.setattr(hysteresis, "best_hysteresis", best)
+    by_line = lambda straight, beside, bend: np.array(alone[bend])  # noqa: E731
+    for some, taken, chosen in (
+        *((bends[:2], 0, (5.1, (A,))), (bends, 0, (9.0, (A, B)))),
+        *((bends, 7, (5.1, (A,))), (bends, 8, (5.0, ())), (bends[3:], 0, None)),
+    ):
+        told = hysteresis._with_a_bend(one, [D], some, by_line, taken)
+        assert told == (chosen and (pytest.approx(chosen[0]), chosen[1], loops[chosen[1]]))
+
+
 def test_a_curve_bends_in_every_slot_that_is_left_at_places_evenly_apart():
     made = [warm()]
     line = (Term("temp", centre=25.0),)
