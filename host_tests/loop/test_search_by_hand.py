@@ -417,6 +417,33 @@ def test_a_bend_gains_with_its_hysteresis_and_both_need_their_slots(monkeypatch)
         assert told == (chosen and (pytest.approx(chosen[0]), chosen[1], loops[chosen[1]]))
 
 
+@pytest.mark.parametrize(
+    ("slots", "p", "accepted", "alike", "kept"),
+    [
+        *((8, 0.009, True, False, True), (8, 0.011, True, False, False)),
+        *((8, 0.009, False, False, False), (8, 0.009, True, True, False)),
+        (0, 0.009, True, False, False),
+    ],
+)
+def test_a_memory_of_one_recording_is_likely_and_no_hysteresis(
+    monkeypatch, slots, p, accepted, alike, kept
+):
+    lags = [candidate(t, kind="thermal-lag") for t in (A, B)]
+    pool = [*lags, candidate(C, kind="temperature-kink")]
+    one = SimpleNamespace(sessions=[dense.made(1, 60)])
+    monkeypatch.setattr(curve, "refined", lambda of, beside, best: best)
+    monkeypatch.setattr(curve, "cancels", lambda *of: False)
+    monkeypatch.setattr(curve, "is_like_hysteresis", lambda *of: alike)
+    monkeypatch.setattr(
+        curve, "PiecesByLine", lambda s: lambda straight, beside, t: np.array([9.0 * (t == (B,))])
+    )
+    asked, told = [], Found(lags[1], decide.Decision(accepted, p, 0.0, 1.0, np.zeros(1)))
+    monkeypatch.setattr(curve.ByPieces, "_judged", lambda self, *of: asked.append(of) or told)
+    by = curve.ByPieces(one, [TEMP], pool, None, 8 - slots)
+    assert by._memory([]) == ([told] if kept else [])
+    assert asked == ([(lags[1], [], (B,), 2)] if slots else [])
+
+
 def test_a_curve_bends_in_every_slot_that_is_left_at_places_evenly_apart():
     made = [warm()]
     line = (Term("temp", centre=25.0),)
