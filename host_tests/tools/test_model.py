@@ -160,10 +160,12 @@ def broken_json(model, **changes):
         ({"version": 2}, "version 2"),
         ({"tick_us": "soon"}, "tick_us"),
         ({"tick_us": 0}, "tick_us: 0 us"),
-        ({"tick_us": 1 << 29}, "tick_us: 536870912 us"),
+        ({"tick_us": 1 << 29}, "tick_us: 536870912 us; 10000 to 536870911 are"),
         ({"scales__gyro_lsb_per_dps": -1}, "scales"),
         ({"binding__chip_id": 4000}, "binding"),
-        ({"inputs__0__shift": 99}, "inputs"),
+        ({"inputs__0__shift": -9}, "inputs: shift -9"),
+        ({"inputs__0__shift": 16}, "inputs: shift 16"),
+        ({"inputs__0__offset": 1 << 29}, "or offset 536870912"),
         ({"slots__1__lag_mode": "sideways"}, "slot 2: lag_mode"),
         ({"slots__0__coefficient_dps": [1, 2]}, "slot 1: coefficient_dps"),
         ({"slots__2__decay_s": -5}, "slot 3: decay_s"),
@@ -176,6 +178,11 @@ def broken_json(model, **changes):
 def test_a_wrong_entry_is_named(model, changes, where):
     with pytest.raises(BadModel, match=where):
         from_json(broken_json(model, **changes))
+
+
+@pytest.mark.parametrize("shift", [-8, 15])
+def test_an_input_is_shifted_by_a_byte_down_and_two_up_at_most(model, shift):
+    assert from_json(broken_json(model, inputs__0__shift=shift)).inputs[0].shift == shift
 
 
 @pytest.mark.parametrize("text", ['["\\ud800"]', "9" * 5000, "[" * 100_000, "{", b"\xff"], ids=len)
