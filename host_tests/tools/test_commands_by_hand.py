@@ -105,16 +105,19 @@ def test_each_chapter_of_the_demo_is_read_while_the_next_is_made_and_1_says_that
         )
     stands_in("zerorate_tools.demo.make_device", SimpleNamespace(logs=["l"]))
     chapters = ["opening", "chapter_one", "chapter_two", "chapter_three", "compared", "ending"]
-    for name in chapters:
-        stands_in(f"zerorate_tools.demo.story.{name}", name)
+    told = [stands_in(f"zerorate_tools.demo.story.{name}", name) for name in chapters]
     for name in ("runtimes.find", "compare.compare", "compare.show.write_page"):
         stands_in(f"zerorate_tools.{name}")
     draw = stands_in("zerorate_tools.demo.picture.draw_job")
     draw.side_effect = lambda *shown: shown[-1].touch()
+    Path("deep").mkdir()
+    Path("deep/model.json").touch()
     assert cli.main(["demo", "--out", "deep", "--runtime", "x86"]) == code
     pipe.flush()
     assert pipe.buffer.getvalue().decode().split() == chapters and read == chapters[:3]
     assert draw.call_args == call(first, before, after, ANY) and Path("deep/demo.png").exists()
+    ((files,), _) = told[-1].call_args
+    assert [path for path, _ in files] == [Path("deep/model.json"), Path("deep/demo.png")]
 
 
 def test_an_interpreter_of_ones_own_is_not_fetched(stands_in, capsys):

@@ -3,7 +3,6 @@
 import math
 import zlib
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 import pytest

@@ -59,7 +59,7 @@ def _chip(arguments: argparse.Namespace) -> dict[str, Any]:
     "fake: for an emulated chip in a simulated hand. Meanwhile the samples are in "
     "NAME.partial.csv, where they stay if the program is killed.",
 )
-def run_record(arguments: argparse.Namespace) -> int:
+def run_record(arguments: argparse.Namespace) -> int | None:
     """Record, or finish a recording; 1 where no sample came."""
     if (arguments.port is None) == (arguments.recover is None):
         raise ZerorateError("name a PORT to record, or a file by --recover FILE")
@@ -69,7 +69,7 @@ def run_record(arguments: argparse.Namespace) -> int:
         raise ZerorateError("name the file to record into by --out FILE")
     else:
         return _record(arguments)
-    return 0
+    return None
 
 
 def _recover(arguments: argparse.Namespace) -> None:

@@ -27,7 +27,7 @@ BY_DEFAULT = "wasm"
     description="Record an emulated chip on an emulated I2C bus with driver and firmware on a real "
     "MicroPython, run `close` on the recordings, and run its model in MicroPython.",
 )
-def run_demo(arguments: argparse.Namespace) -> int:
+def run_demo(arguments: argparse.Namespace) -> int | None:
     """Do the whole job, or run over the public recording; exit code 2 where that was not to be had.
 
     What needs no network takes the place of what cannot be fetched, and that is said.
@@ -48,11 +48,12 @@ def run_demo(arguments: argparse.Namespace) -> int:
     if not arguments.real:
         return run_job(arguments)
     try:
-        return run_real(arguments)
+        run_real(arguments)
     except CannotFetch as missing:
         print(f"zerorate: {missing}\nThe built-in device is shown instead.", file=sys.stderr)
         run_job(arguments)
         return 2
+    return None
 
 
 def get_ready(runtime: str) -> None:
@@ -104,7 +105,7 @@ def run_job(arguments: argparse.Namespace) -> int:
     return 0 if all(shown.same_state for shown in (first, before, after)) else 1
 
 
-def run_real(arguments: argparse.Namespace) -> int:
+def run_real(arguments: argparse.Namespace) -> None:
     from ..demo import story
     from ..demo.broad import broad_trial
     from ..demo.real import real
@@ -115,7 +116,6 @@ def run_real(arguments: argparse.Namespace) -> int:
     with progress("running the firmware over it", 4) as advance:
         shown = real(trial, arguments.runtime, advance)
     print(story.real_trial(shown, arguments.runtime))
-    return 0
 
 
 def draw_into(folder: Path, draw: Callable[..., None], *shown: Any) -> Path:
@@ -148,17 +148,16 @@ with_actions("runtimes", "fetch and list the MicroPython interpreters")
     argument("names", nargs="+", choices=_GETTABLE, metavar="NAME"),
 )
 def get(arguments: argparse.Namespace) -> int:
-
     from zerorate_tools.errors import MissingRuntime
     from zerorate_tools.runtimes import fetch
 
-    missing = 0
+    missing = []
     for name in arguments.names:
         try:
             _fetch_emulator() if name == "rp2040" else fetch(name)
             print(f"{name}: ready")
         except MissingRuntime as error:
-            missing += 1
+            missing.append(name)
             print(f"zerorate: {name}: {error}", file=sys.stderr)
     return MissingRuntime.exit_code if missing else 0
 

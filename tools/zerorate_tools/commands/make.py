@@ -47,13 +47,13 @@ def _row(text: str) -> int:
     switch("--entries", "list what a description may contain"),
     description="Make recordings of a device described in TOML or YAML, or of a bundled one.",
 )
-def run_simulate(arguments: argparse.Namespace) -> int:
+def run_simulate(arguments: argparse.Namespace) -> None:
     from ..progress import progress
     from ..simulate import bundled_names, load_description, reference, simulate_to_files
 
     if arguments.list or arguments.entries:
         print("\n".join(bundled_names()) if arguments.list else reference())
-        return 0
+        return
     if arguments.description is None or arguments.out is None:
         arguments.refuse("a description and --out FILE are needed (or --list, --entries)")
     described = load_description(arguments.description)
@@ -63,7 +63,6 @@ def run_simulate(arguments: argparse.Namespace) -> int:
         files = simulate_to_files(described, arguments.out, **options, done=done)
     for file in files:
         print(file)
-    return 0
 
 
 _EPILOG = """\
