@@ -22,7 +22,7 @@ from zerorate_tools.simulate.attitude import IDENTITY, integrate, into_body, mul
 
 from .test_report_form import breaches
 
-_HZ, _MINUTES = 50.0, 5.0
+_HZ, _MINUTES = 50.0, 2.5
 _SCALES = Scales("MPU-6050", _HZ, 32.8, 8192.0, None, None)
 _MATRIX = np.array([[0.012, 0.0, 0.003], [0.0, -0.009, 0.0], [0.003, 0.0, 0.006]])
 

@@ -30,7 +30,7 @@ def parted(*entries, unsure=()):
     """(groups, unsure) that recordings a, b, c, ... are refused as, or None."""
     every = [*map(said, entries), *(said(entry, 1.0) for entry in unsure)]
     try:
-        check_one_device([*zip("abcdefgh", every)])
+        check_one_device([*zip("abcdefghijk", every)])
     except DifferentDevices as error:
         return sorted(map(sorted, error.groups)), error.unsure
     return None
@@ -41,6 +41,8 @@ def test_recordings_of_two_devices_are_parted_and_those_that_tell_little_said_to
     assert parted(-0.005, 0.005, 0.0051, -0.0051) == ([["a", "d"], ["b", "c"]], [])
     (one, other), unsure = parted(0.005, 0.0051, -0.005, -0.0051, unsure=[0.0])
     assert {*one, *other} == {*"abcde"} and {"a", "b"} <= {*one} | {*other} and unsure == ["e"]
+    halves = np.repeat([0.005, -0.005], [5, 6]).tolist()  # of ten every split is tried
+    assert parted(*halves[:10]) == ([[*"abcde"], [*"fghij"]], []) and parted(*halves) is None
     assert parted(0.005, 0.0051, 0.0049) is None and parted(0.005, -0.005) is None
 
 

@@ -108,20 +108,22 @@ def columns_of(moving: Moving, matrix, own) -> Columns:
     """
     per = max(1, round(1.0 / (_COLUMNS_HZ * moving.dt_s)))
     chunk, whole = per * _CHUNK, len(moving.rate) // per * per
-    attitude, theta, parts = IDENTITY, np.zeros((3, MATRIX + 6)), []
+    attitude, theta, parts, offs = IDENTITY, np.zeros((3, MATRIX + 6)), [], []
     starts = list(range(0, whole - 1, chunk))  # one sample alone has no slope: it joins the last
     for first, end in zip(starts, [*starts[1:], whole]):
         span = slice(first, end)
         attitudes, steps, late, seen, added = _chunk_of(moving, span, per, attitude, matrix, own)
-        attitude, tilted = attitudes[-1], _off(moving.given, span, attitudes, per)
+        attitude = attitudes[-1]
+        if moving.given is not None:
+            offs.append(_off(moving.given[span], attitudes, per))
         ends = np.cumsum(steps[0], axis=0) + theta
         middle = ends - steps[0] + steps[1]
         theta = ends[-1]
-        parts.append((seen, np.concatenate([middle, late], axis=2), added, tilted))
-    seen, theta, own, tilted = (np.concatenate(p) for p in zip(*parts))
+        parts.append((seen, np.concatenate([middle, late], axis=2), added))
+    seen, theta, own = (np.concatenate(p) for p in zip(*parts))
     step_s = per * moving.dt_s
-    at, off = np.arange(len(seen)) * per, None if moving.given is None else tilted
-    return Columns(at, seen, _loud(seen, step_s), theta, own, off, step_s)
+    off = np.concatenate(offs) if offs else None
+    return Columns(np.arange(len(seen)) * per, seen, _loud(seen, step_s), theta, own, off, step_s)
 
 
 def _loud(seen: np.ndarray, step_s: float) -> np.ndarray:
@@ -168,12 +170,10 @@ def _chunk_of(moving, span, per, attitude, matrix, own):
     return attitudes, steps, late[..., None], seen, own
 
 
-def _off(given: np.ndarray | None, span: slice, attitudes: np.ndarray, per: int) -> np.ndarray:
+def _off(given: np.ndarray, attitudes: np.ndarray, per: int) -> np.ndarray:
     """(m, 4) mean turn, over each step, from the frame of the attitude given to the integrated one;
     NaN where it was not seen."""
-    if given is None:
-        return np.zeros((len(attitudes) // per, 4))
-    off = multiply(attitudes, given[span] * [1.0, -1.0, -1.0, -1.0])
+    off = multiply(attitudes, given * [1.0, -1.0, -1.0, -1.0])
     seen = np.isfinite(off).all(axis=1)
     off[~seen] = 0.0
     off *= np.where(off @ off[seen.argmax()] < 0, -1.0, 1.0)[:, None]

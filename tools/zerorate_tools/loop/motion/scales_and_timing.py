@@ -116,7 +116,7 @@ def timing_of(sessions_products: list[tuple[np.ndarray, float]]) -> Timing | Non
     total = np.vstack(own)
     rows = np.vstack(runs)
     rows = rows[rows[:, 1] > 1e-3 * max(rows[:, 1].max(initial=0.0), 1e-12)]
-    if len(rows) < 8 or not (total[:, 1] > 0).all():
+    if len(rows) < 8 or not total[:, 1].all():
         return None
     delay = -rows[:, 0].sum() / rows[:, 1].sum()
     left = rows[:, 0] + delay * rows[:, 1]
