@@ -276,8 +276,12 @@ def widths_by_trial(fits, number, powers):
     return sorted(min(left, key=left.get))
 
 
-@pytest.mark.parametrize(("number", "powers"), [(1, (1,)), (1, (1, 2)), (2, (1,)), (2, (1, 2))])
-def test_the_widths_of_play_operators_are_those_that_leave_least_of_all_axes(number, powers):
+@pytest.mark.parametrize("powers", [(1,), (1, 2)])
+@pytest.mark.parametrize(("number", "grid"), [(1, 64), (2, 64), (3, 12), (4, 12)])
+def test_the_widths_of_play_operators_are_those_that_leave_least_of_all_axes(
+    monkeypatch, number, grid, powers
+):
+    monkeypatch.setattr(hysteresis, "_GRID", grid)
     s = dense.made(5, 60, names=("temp",))
     s.sources["temp"] = degc = 25 + 9 * np.sin(np.arange(60) / 7)
     loops = np.column_stack([play(degc, 2 * r) ** k for r, k in ((1.0, 1), (4.0, 1), (2.5, 2))])
@@ -417,6 +421,16 @@ def test_a_bend_gains_with_its_hysteresis_and_both_need_their_slots(monkeypatch)
         assert told == (chosen and (pytest.approx(chosen[0]), chosen[1], loops[chosen[1]]))
 
 
+def test_a_rival_is_the_simpler_effect_that_predicts_best_with_the_bend():
+    pool = [*SIMPLER, candidate(C, kind="supply-voltage")]
+    told = {(D, A): [1.0, 2.0], (D, B): [4.0, -0.5], (D, C): [9.0, 9.0]}
+    by_line = lambda straight, beside, terms: np.array(told[terms])  # noqa: E731
+    assert hysteresis._rival([], (D,), pool, by_line) == (SIMPLER[1], 3.5)
+    one = SimpleNamespace(gains=lambda beside, groups: np.full((1, 3), 8.0))
+    p, ratio = hysteresis._chance(one, [], LOOP)
+    assert (p, ratio) == (pytest.approx(chi2.sf(24.0, 3) * 8 * 6), 24.0)
+
+
 @pytest.mark.parametrize(
     ("slots", "p", "accepted", "alike", "kept"),
     [
@@ -458,6 +472,66 @@ def test_a_curve_bends_in_every_slot_that_is_left_at_places_evenly_apart():
     assert curve.smooth_curve(made, (), 0) == []
     by = curve.ByPieces(SimpleNamespace(sessions=made), (), [], None, 0)
     assert by._curve([]) == [] == by._kink([])
+
+
+@pytest.mark.parametrize(
+    ("degc", "p", "accepted", "found"),
+    [
+        *((10.0, 0.01, True, True), (10.0, 0.011, True, False), (10.0, 0.009, False, False)),
+        *((0.1, 0.011, True, True), (0.1, 1.0, True, True)),
+    ],
+)
+def test_a_curve_is_likely_and_bends_in_the_slots_that_others_leave(
+    monkeypatch, degc, p, accepted, found
+):
+    made, line = [warm(temp=np.linspace(20.0, 20.0 + degc, 50))], (TEMP,)
+    told = [Found(None, decide.Decision(accepted, p, 0.0, 1.0, np.array([g]))) for g in (1.0, 2.0)]
+    smooth, kink = candidate(A, B, C), candidate(D)
+    asked = []
+    monkeypatch.setattr(curve, "smooth_curve", lambda *of: asked.append(of) or [smooth])
+    monkeypatch.setattr(curve.ByPieces, "_kink", lambda self, beside: [kink])
+    judge = lambda self, c, *of: asked.append((c, *of)) or told[c is kink]  # noqa: E731
+    monkeypatch.setattr(curve.ByPieces, "_judged", judge)
+    by = curve.ByPieces(SimpleNamespace(sessions=made), line, [], None, 1)
+    assert by._curve([Found(candidate(A, B), None)], 1) == (told[::-1] if found else [])
+    assert asked == [
+        (made, line, 4),
+        *((smooth, [A, B], (B, C), 1), (kink, [A, B], (D,), 1)),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("curves", "memories", "kinds"),
+    [
+        ([], [], ["supply"]),
+        ([5.0], [], ["supply", curve.KIND]),
+        ([5.0], [7.0], ["supply", "thermal-lag", curve.KIND]),
+        ([], [7.0], ["supply", "thermal-lag"]),
+    ],
+)
+def test_what_gains_more_is_taken_first_and_the_curve_gets_the_slots_that_are_left(
+    monkeypatch, curves, memories, kinds
+):
+    asked = []
+
+    def way(kind, gains):
+        def look(self, some, kept=0):
+            asked.append((kind, [f.candidate.kind for f in some], kept))
+            every = [decide.Decision(True, 0.0, 0.0, 1.0, np.array([gain])) for gain in gains]
+            return [Found(candidate(A, kind=kind), decision) for decision in every]
+
+        return look
+
+    monkeypatch.setattr(curve.ByPieces, "_curve", way(curve.KIND, curves))
+    monkeypatch.setattr(curve.ByPieces, "_memory", way("thermal-lag", memories))
+    before = [Found(candidate(A, kind="supply"), None)]
+    told = curve.ByPieces(None, [], [], None, 0).look(before)
+    assert [f.candidate.kind for f in told] == kinds
+    assert asked[:2] == [(curve.KIND, ["supply"], 1), ("thermal-lag", ["supply"], 1)]
+    if memories:
+        assert asked[2] == (curve.KIND, ["supply", "thermal-lag"], 0)
+    if curves:
+        assert asked[-1] == (curve.KIND, kinds[:-1], 0)
 
 
 @pytest.mark.parametrize(("blocks", "shows"), [(None, True), (1, False)])

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from zerorate_tools.loop.search import examine, hysteresis, select
+from zerorate_tools.loop.search import curve, examine, hysteresis, select
 from zerorate_tools.loop.search.catalogue import Candidate
 from zerorate_tools.loop.search.decide import Decision
 from zerorate_tools.loop.search.examine import Examiner
@@ -148,6 +148,39 @@ def test_a_sum_of_play_operators_takes_the_place_of_what_remembers_if_it_is_like
     search._widen_hysteresis()
     assert [f.candidate.kind for f in search.found] == kinds
     assert [f.rivals for f in search.found] == rivals
+
+
+POOL = [LAG, KINK, BEND, DRIFT, START, VOLTS]
+FEW = (curve.KIND, "too few rests to tell by pieces left out")
+
+
+@pytest.mark.parametrize(
+    ("again", "rests", "loop", "kinds", "refused"),
+    [
+        (False, 12, None, [LAG, VOLTS, "curve"], [(hysteresis.KIND, "as well")]),
+        (False, 12, LOOP, [LAG, VOLTS], []),
+        (True, 12, LOOP, [LAG, DRIFT, START, VOLTS], []),
+        (False, 11, LOOP, [LAG, VOLTS], [FEW]),
+    ],
+)
+def test_a_recording_alone_is_asked_for_a_hysteresis_first(
+    monkeypatch, again, rests, loop, kinds, refused
+):
+    bend, judged, said = BEND.terms, object(), (loop and found(loop), "" if loop else "as well")
+    every = POOL if again else [c for c in POOL if c not in (DRIFT, START)]
+    pair, alone = (bend, every, 5), ([(), bend, bend], every, judged, 5)
+    monkeypatch.setattr(curve, "LEAST_OF_A_PIECE", 12 / curve.PIECES)
+    monkeypatch.setattr(select, "of_a_pair", lambda r, line, *of: again and of == pair and said)
+    one = lambda r, line, *of: not again and of == alone and said  # noqa: E731
+    monkeypatch.setattr(hysteresis, "of_one_recording", one)
+    monkeypatch.setattr(curve, "smooth_curve", lambda made, line, n: ["curve"] * (n == 5))
+    search = searching(pool=POOL, judged_again=again, taken=5)
+    search.regression.sessions = [dense.made(1, rests)]
+    search._begin_with_one(judged)
+    begun = loop is not None and FEW not in refused
+    assert search.pool == kinds and search.refused == refused
+    assert search.forms == ([KINK, BEND] if FEW not in refused else [])
+    assert (search.found, search.kept) == ([said[0]] * begun, begun)
 
 
 def test_the_best_of_four_kinds_are_tried_by_their_likelihood_less_what_they_cost():

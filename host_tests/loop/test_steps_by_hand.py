@@ -251,6 +251,13 @@ def test_a_step_stands_beside_a_ramp_with_those_within_eight_blocks_taken_out(
     assert there[0] == steps[2:] and all(both == [*steps[2:], *steps[:2]] for both in there[1:])
 
 
+def test_two_are_the_same_within_two_blocks_of_one_session_and_more_of_them_are_rarer():
+    one, *others = (Step(s, b, np.zeros(3), 1.0, 1.0) for s, b in ((0, 5), (0, 7), (0, 8), (1, 5)))
+    assert [listed._is_same(one, other) for other in others] == [True, False, False]
+    assert [listed._is_same(other, one) for other in others] == [True, False, False]
+    assert (listed._level(0), listed._level(1), listed._level(3)) == (2e-3, 1e-4, 1e-4)
+
+
 COLD = Term("temp", centre=20.0)
 
 
