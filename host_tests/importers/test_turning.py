@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pandas as pd
 import pytest
-from hypothesis import given, settings
+from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 from zerorate_tools.closing import close
@@ -13,10 +13,13 @@ from zerorate_tools.errors import BadRecording
 from zerorate_tools.importers import Options, import_recording
 from zerorate_tools.importers.columns.mapping import parsed_mapping
 from zerorate_tools.loop.read.gate import CannotClose
+from zerorate_tools.recordings import turning
 from zerorate_tools.recordings.turning import axes_of, dps_of_one
 
 from .test_tables import read
 
+#: What fails is told as it is found: to look for less of it takes minutes.
+QUICK = (Phase.explicit, Phase.generate)
 SIGNS = st.tuples(*[st.sampled_from([-1, 1])] * 3)
 UNITS_DPS = {"dps": 1.0, "mdps": 1e-3, "rad/s": 180 / np.pi, "mrad/s": 0.18 / np.pi}
 
@@ -38,7 +41,7 @@ def in_a_hand(seed=1, hz=50.0, seconds=30.0, axes=(1, 1, 1), push_g=0.3):
     return t_s, rates + rng.normal(0, 0.1, rates.shape) + 0.8, np.transpose(force) + pushed + noise
 
 
-@settings(max_examples=12)
+@settings(max_examples=12, phases=QUICK)
 @given(
     seed=st.integers(0, 10**6),
     hz=st.sampled_from([10.0, 25.0, 104.0, 400.0]),
@@ -68,7 +71,7 @@ def test_a_pendulum_whose_pushes_move_with_it_does_not_mislead(tmp_path, length_
     assert not read(tmp_path, frame)[1].doubts
 
 
-@settings(max_examples=12)
+@settings(max_examples=12, phases=QUICK)
 @given(seed=st.integers(0, 10**6), hz=st.sampled_from([10.0, 104.0]))
 def test_at_rest_and_from_axes_that_do_not_belong_together_nothing_is_told(seed, hz):
     t_s, rates, force = in_a_hand(seed, hz)
@@ -78,7 +81,7 @@ def test_at_rest_and_from_axes_that_do_not_belong_together_nothing_is_told(seed,
     assert dps_of_one(-rates, force, t_s) is None
 
 
-@settings(max_examples=12)
+@settings(max_examples=12, phases=QUICK)
 @given(seed=st.integers(0, 10**6), order=st.permutations(range(3)), signs=SIGNS)
 def test_in_a_hand_gravity_tells_the_axes_of_rates(seed, order, signs):
     t_s, rates, force = in_a_hand(seed)
@@ -111,6 +114,62 @@ def test_gaps_and_cells_without_a_number_do_not_change_what_is_told():
     assert dps_of_one(rates[:, :500], force[:, :500], t_s[:500]) is None  # of ten seconds
     slow = in_a_hand(hz=0.5, seconds=600.0)
     assert dps_of_one(*slow[1:], slow[0]) is None
+
+
+def test_vectors_turn_as_rotation_vectors_say():
+    vectors, turn = np.random.default_rng(1).normal(0, 1, (2, 3, 20))
+    turn[:, 0] = 0.0
+    turned = Rotation.from_rotvec(turn.T).apply(vectors.T).T
+    assert turning._turned(vectors, turn) == pytest.approx(turned, abs=1e-12)
+
+
+def test_spans_are_of_three_seconds_without_a_gap_in_means_of_30_ms():
+    t_s = np.arange(300 * 8 + 1) / 100
+    t_s[301:] += 0.29  # within the second span, the first step of which is whole
+    t_s[901:] += 0.31
+    t_s[1501:] -= 0.31
+    rates, force = np.random.default_rng(1).normal(0, 1, (2, 3, len(t_s)))
+    rates[:, -1], force[0, -1] = np.nan, np.inf
+    turns, forces = turning._spans(np.insert(rates, 5, np.nan, 1), np.insert(force, 5, 0, 1),
+                                   np.insert(t_s, 5, 0.045))  # fmt: skip
+    for found, of in ((turns, np.radians(rates * 0.03)), (forces, force)):
+        means = of[:, : 300 * 7].reshape(3, 7, 100, 3).mean(axis=3)[:, [0, 1, 2, 4, 6]]
+        assert found == pytest.approx(means.transpose(2, 0, 1))
+    assert turning._spans(rates[:, :2100], force[:, :2100], t_s[:2100]) is None  # of four
+
+
+@pytest.mark.parametrize(("spans", "used"), [(5, 5), (99, 99), (100, 50), (199, 100), (200, 67)])
+def test_a_hundred_spans_tell_enough(spans, used):
+    t_s = np.arange(2 * spans + 1) * 1.5
+    every = np.array([t_s] * 3)
+    assert turning._spans(every, every, t_s)[1].shape[2] == used
+    assert turning._spans(every, every, np.arange(len(t_s)) * 1.6) is None
+    assert turning._spans(every[:, :1], every[:, :1], t_s[:1]) is None
+
+
+@pytest.mark.parametrize(("power", "told"), [(-33, 0), (-32, 1), (-4.5, 1), (19, 1), (20, 0)])
+def test_sizes_at_the_ends_of_what_is_tried_are_not_told(power, told):
+    t_s, rates, force = in_a_hand(hz=33.0, seconds=20.0, push_g=0.0)
+    size = dps_of_one(rates / 1.25**power, force, t_s)
+    assert (size is not None) == told
+    if told:
+        assert size.dps == pytest.approx(1.25**power, rel=0.03)
+        assert (size.least, size.most) == pytest.approx((size.dps / 1.4, size.dps * 1.4))
+
+
+@pytest.mark.parametrize(("swing_rad", "times", "otherwise"), [(0.36, 4.1, 0), (0.39, 1.4, 1)])
+def test_what_swings_little_may_be_a_pendulum(swing_rad, times, otherwise):
+    t_s = np.arange(700) / 33
+    swing = swing_rad * np.sin(2 * t_s)
+    rates = np.array([np.degrees(np.gradient(swing, t_s)), 0 * t_s, 0 * t_s])
+    force = np.array([0 * t_s, np.sin(swing), np.cos(swing)])
+    size = dps_of_one(rates, force, t_s)
+    assert (size.least, size.most) == pytest.approx((size.dps / 1.4, size.dps * times))
+    assert not turning.turns_otherwise(rates, force, t_s)
+    for push, alone in ((0.13, True), (0.16, False)):  # their RMS is 0.7 of it
+        pushed = 3 * force * (1 + push * np.sin(9 * t_s))
+        assert turning.turns_otherwise(-rates, pushed, t_s) == (alone and otherwise)
+    assert not turning.turns_otherwise(-rates[:, :9], force[:, :9], t_s[:9])
 
 
 def plain(dps=1.0, names="gyro_x,gyro_y,gyro_z"):

@@ -9,6 +9,7 @@ import pytest
 from zerorate_tools.errors import BadRecording
 from zerorate_tools.recordings import open_recording, read_recording, write_recording
 from zerorate_tools.recordings.checks import GAP
+from zerorate_tools.recordings.parquet_format import batches, open_file
 
 from .test_recordings import a_recording
 
@@ -35,6 +36,7 @@ _SCALES = '{"sensor": "X", "odr_hz": %s, "gyro_lsb_per_dps": 1}'
             (f"{HEADER}\n0,1,2,3\n0,{cell},2,x\n", "row 2: gz is 'x', no integer")
             for cell in ("-1", "+1", " 7 ", "\t7", "-" + "9" * 18, "")
         ),
+        (f"{HEADER}\n0,1,2,3\n1,x,y,3\n2,1,z,3\n", "row 2: gx is 'x', no integer"),
         (f"\n\n{HEADER}\n0,1,2,3\n1,1,2\n2,1,x,3\n", "row 2: 3 cells where the header names 4"),
         (
             f"{HEADER}\n0,1,2,3\n1,1,2\n2,1,2,3\n3,1,x,3\n",
@@ -137,6 +139,16 @@ def test_a_truncated_file_is_refused(tmp_path, name):
             read_recording(tmp_path / name)
 
 
+def test_damage_within_a_parquet_is_refused(tmp_path):
+    write_recording(a_recording(5000), tmp_path / "run.parquet")
+    whole = bytearray((tmp_path / "run.parquet").read_bytes())
+    whole[100 : len(whole) // 2] = bytes(len(whole) // 2 - 100)
+    (tmp_path / "run.parquet").write_bytes(whole)
+    file = open_file(tmp_path / "run.parquet")
+    with pytest.raises(BadRecording, match="the Parquet data is damaged; copy"):
+        list(batches(file, tmp_path / "run.parquet", 1000))
+
+
 def test_a_parquet_without_scales_is_refused(tmp_path):
     pq.write_table(pa.table({"t_us": [0], "gx": [1], "gy": [1], "gz": [1]}), tmp_path / "x.parquet")
     with pytest.raises(BadRecording, match="no scales .schema metadata"):
@@ -165,11 +177,13 @@ def test_what_is_no_recording_at_all_is_refused(tmp_path, name, complaint):
         open_recording(tmp_path / name)
 
 
-@pytest.mark.parametrize("encoding", ["utf-16", "utf-16-le", "utf-16-be", "utf-32"])
-def test_text_in_utf_16_is_read_with_a_mark_and_without(tmp_path, encoding):
-    (tmp_path / "x.csv").write_bytes("t_us,gx,gy,gz\n1,2,3,4\n".encode(encoding))
+@pytest.mark.parametrize(
+    "encoding", ["utf-8", "latin-1", "utf-16", "utf-16-le", "utf-16-be", "utf-32"]
+)
+def test_text_of_any_encoding_is_read_with_a_mark_and_without(tmp_path, encoding):
+    (tmp_path / "x.csv").write_bytes("t_us,gx,gy,gz,µ\n1,2,3,4,5\n".encode(encoding))
     (tmp_path / "x.json").write_text('{"sensor": "X", "odr_hz": 1, "gyro_lsb_per_dps": 1}')
-    assert read_recording(tmp_path / "x.csv").columns["gz"].tolist() == [4]
+    assert read_recording(tmp_path / "x.csv").columns["µ"].tolist() == [5]
 
 
 SCALES_OF_ALL = {"odr_hz": 1, "gyro_lsb_per_dps": 1, "accel_lsb_per_g": 1}

@@ -236,6 +236,8 @@ def test_a_header_is_the_first_line_that_is_not_blank_up_to_64_kib(tmp_path, enc
     path.write_bytes('\n  \n t_us ,"g,x", gy\n1,2,3\n'.encode(encoding))
     header = read_header(path)
     assert (header.names, header.skip) == (["t_us", "g,x", "gy"], 3)
+    path.write_bytes(b"a\n" + b"x" * 65533 + "µ\n".encode())  # cut in two by the end of these
+    assert read_header(path).encoding == "utf-8"
     for length, ending in ((65535, ""), (65534, "\n1"), (65536, ""), (70000, "\n")):
         path.write_text("a" * length + ending)
         if length < 65536:

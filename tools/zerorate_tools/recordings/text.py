@@ -1,5 +1,6 @@
 """A text file's bytes as UTF-8, whatever it is packed or encoded in, never more than a block."""
 
+import codecs
 import io
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -133,8 +134,8 @@ def _encoding(content: bytes) -> str:
     if sample[::2].count(0) > 0.4 * len(sample):
         return "utf-16-be"
     try:
-        content[: len(content) - 3].decode("utf-8")
-    except UnicodeDecodeError as error:
-        # a letter cut in two at the end is no sign of another encoding
-        return "utf-8" if error.start > len(content) - 8 else "latin-1"
+        # to be continued: a letter cut in two at the end is no sign of another encoding
+        codecs.getincrementaldecoder("utf-8")().decode(content)
+    except UnicodeDecodeError:
+        return "latin-1"
     return "utf-8"

@@ -53,16 +53,17 @@ def dps_of_one(rates: np.ndarray, force: np.ndarray, t_s: np.ndarray) -> Size | 
     if spans is None:
         return None
     turns, forces = spans
-    lacking = _lacking(turns, forces, _sized(np.append(_SIZES_DPS, 0.0)))
-    best = int(np.argmin(lacking[:-1]))
+    unturned = _unturned(forces)
+    best = int(np.argmin(_lacking(turns, forces, _sized(_SIZES_DPS))))
+    if best in (0, len(_SIZES_DPS) - 1):
+        return None
     near = _SIZES_DPS[best] * 1.25 ** np.linspace(-1.0, 1.0, 9)
     finer = _lacking(turns, forces, _sized(near))
-    at_an_end = best in (0, len(_SIZES_DPS) - 1)
-    left = float(finer.min() / lacking[-1])
-    if at_an_end or not left < _EXPLAINED:
+    left = float(finer.min() / unturned)
+    if not left < _EXPLAINED:
         return None
     dps = float(near[np.argmin(finer)])
-    most = dps * (_SWUNG if lacking[-1] < _SWINGS else _PUSHED)
+    most = dps * (_SWUNG if unturned < _SWINGS else _PUSHED)
     return Size(dps, dps / _PUSHED, most, left)
 
 
@@ -76,7 +77,7 @@ def turns_otherwise(rates: np.ndarray, force: np.ndarray, t_s: np.ndarray) -> bo
         return False
     lengths = np.linalg.norm(spans[1], axis=1)
     unpushed = np.std(lengths) < _UNPUSHED * np.median(lengths)
-    return bool(unpushed and _lacking(*spans, np.zeros((1, 3, 3)))[0] > _SWINGS)
+    return bool(unpushed and _unturned(spans[1]) > _SWINGS)
 
 
 def axes_of(rates_dps: np.ndarray, force: np.ndarray, t_s: np.ndarray) -> np.ndarray | None:
@@ -89,9 +90,9 @@ def axes_of(rates_dps: np.ndarray, force: np.ndarray, t_s: np.ndarray) -> np.nda
     if spans is None:
         return None
     turns, forces = spans
-    lacking = _lacking(turns, forces, np.concatenate([_AXES, np.zeros((1, 3, 3))]))
-    best, second = np.argsort(lacking[:-1])[:2]
-    clear = lacking[best] < _EXPLAINED * min(lacking[second], lacking[-1])
+    lacking = _lacking(turns, forces, _AXES)
+    best, second = np.argsort(lacking)[:2]
+    clear = lacking[best] < _EXPLAINED * min(lacking[second], _unturned(forces))
     return _AXES[best] if clear else None
 
 
@@ -139,6 +140,11 @@ def _lacking(turns: np.ndarray, forces: np.ndarray, taken: np.ndarray) -> np.nda
         summed += force[:, np.newaxis]
     lengths = np.linalg.norm(forces, axis=1).sum()
     return 1.0 - np.linalg.norm(summed, axis=0).sum(axis=1) / lengths
+
+
+def _unturned(forces: np.ndarray) -> float:
+    """What the mean force is shorter by as it is, as a share."""
+    return _lacking(np.zeros_like(forces), forces, np.eye(3)[np.newaxis]).item()
 
 
 def _turned(vectors: np.ndarray, turn: np.ndarray) -> np.ndarray:
