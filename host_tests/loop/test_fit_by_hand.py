@@ -56,6 +56,9 @@ def test_the_line_is_that_of_least_squares_with_an_offset_a_stretch(sessions):
     x, y = with_offsets(sessions, columns, [s.rate_dps for s in sessions])
     expected = np.linalg.lstsq(x, y, rcond=None)[0]
     assert line.ordinary([LINE, A], sessions) == pytest.approx(expected, rel=1e-9)
+    still = [replace(s, sources={**s.sources, "b": np.ones(s.blocks)}) for s in sessions]
+    with_none = np.vstack([expected, np.zeros(3)])
+    assert line.ordinary([LINE, A, B], still) == pytest.approx(with_none, rel=1e-9)
     given = np.array([[0.5, -1.0, 2.0]])
     less = [s.rate_dps - np.outer(s.sources["a"], given) for s in sessions]
     x, y = with_offsets(sessions, [c[:, :1] for c in columns], less)
@@ -64,9 +67,11 @@ def test_the_line_is_that_of_least_squares_with_an_offset_a_stretch(sessions):
 
 
 def test_play_operators_are_held_back_by_a_twentythousandth_of_their_own_size(sessions):
-    terms = [LINE, replace(A, memory="play", width=1.0), replace(A, memory="play", width=1.1)]
+    sessions = [replace(s, sources={**s.sources, "a": s.sources["a"] / 10}) for s in sessions]
+    widths = 0.1, 0.11
+    terms = [LINE, *(replace(A, memory="play", width=w) for w in widths)]
     columns = [
-        np.column_stack([s.sources["temp"] - 25, *(play(s.sources["a"], w) for w in (1.0, 1.1))])
+        np.column_stack([s.sources["temp"] - 25, *(play(s.sources["a"], w) for w in widths)])
         for s in sessions
     ]
     x, y = with_offsets(sessions, columns, [s.rate_dps for s in sessions])
