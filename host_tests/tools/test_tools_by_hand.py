@@ -57,7 +57,9 @@ def test_floats_become_words_of_the_full_scale(heard):
 
 def test_what_the_guard_refuses_and_what_is_no_number_is_counted(heard):
     corrector = FloatCorrector(50)
-    heard(corrector)
+    given = heard(corrector)
+    corrector.update((0.0, 0.0, 0.0), (0.0, 0.0, 1.0))
+    assert given[0][0][2] == round(32767 / 16)  # g, where no unit is told
     for refused, temp_degc in ((0, 25.0), (3, 25.0), (0, float("inf")), (1, 25.0)):
         corrector.corrector.update = lambda sample, dt_us, said=refused: said
         left = corrector.update((1.0, 2.0, 3.0), (0.0, 0.0, 1.0), temp_degc)
@@ -148,6 +150,15 @@ def test_a_program_of_its_own_ends_by_a_signal_unless_nohup_ignores_it(monkeypat
     assert capsys.readouterr().out.endswith("a\\x1bb\n")
 
 
+def test_a_name_that_is_no_text_is_shown_with_what_stands_around_it(monkeypatch, capsys):
+    name = "a" * 60 + "\udcff" + "b" * 60
+    unread = UnicodeEncodeError("utf-8", name, 60, 61, "surrogates not allowed")
+    monkeypatch.setattr(cli, "parser", lambda: Mock(parse_args=Mock(side_effect=unread)))
+    assert cli.main(["x"]) == 2
+    said = capsys.readouterr().err
+    assert f" {'a' * 40}\\udcff{'b' * 40}: not UTF-8" in said
+
+
 def test_the_system_s_own_words_come_with_the_file_s_name_and_what_to_do_of_a_bus():
     for number, path, said in (
         (errno.ENOENT, "/dev/i2c-1", "is I2C switched on"),
@@ -206,6 +217,7 @@ def test_a_child_limits_itself_by_the_file_s_size_and_never_beyond_what_its_user
     [
         (-24, "too long", "cut it"),
         (1, "ended with 1", "ulimit"),
+        (0, "ended with 0", "copy it again"),
         (-11, "with -11", "copy it again"),
     ],
 )

@@ -3,7 +3,6 @@
 What a file says of itself bounds nothing. A child runs no code from the folder one stands in.
 """
 
-import errno
 import os
 import signal
 import stat
@@ -41,7 +40,7 @@ def bytes_of(path: str | PathLike[str], do: str, error: type[InFile] = InFile) -
         with open(path, "rb") as file:
             data = file.read(_MOST_BYTES + 1)
     except OSError as failure:
-        missing = failure.errno == errno.ENOENT
+        missing = isinstance(failure, FileNotFoundError)
         problem = "no such file" if missing else f"cannot be read: {failure.strerror}"
         raise error(path, problem, do=do) from failure
     if len(data) > _MOST_BYTES:
