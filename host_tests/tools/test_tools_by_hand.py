@@ -15,6 +15,7 @@ from zerorate_tools import bounds, cli, closing, closing_in_motion, numbers, pro
 from zerorate_tools.allan import Noise, overlapping
 from zerorate_tools.errors import InFile, ZerorateError, os_error_in_words, printable
 from zerorate_tools.host import FloatCorrector
+from zerorate_tools.loop.motion.by_windows import GIVEN, GRAVITY, UNIT
 from zerorate_tools.loop.read.gate import TooLittleRest
 from zerorate_tools.model import Slot, build_model, write_model
 from zerorate_tools.model.term import Term
@@ -192,6 +193,7 @@ def test_the_deviation_of_noise_has_its_three_slopes_and_a_floor():
     assert flat.deviation(np.array([1.0, 9.0])) == pytest.approx([0.3 * 0.6643] * 2, rel=1e-3)
     assert noise.floor_dps(1.0) == pytest.approx(0.3 / 2**0.5)  # two blocks at least
     assert noise.floor_dps(100.0) == pytest.approx(0.3 / (100 / 6) ** 0.5)
+    assert Noise(3.0, 0.3, 0.0, 0.0).floor_dps(1.0) == pytest.approx(0.3 / 2**0.5)
     assert walk.floor_dps(96.0) == pytest.approx(0.3 / 3**0.5)
 
 
@@ -210,6 +212,9 @@ def test_a_child_limits_itself_by_the_file_s_size_and_never_beyond_what_its_user
     assert put[resource.RLIMIT_CPU] == (69, 70)
     bounds.limit_myself(2_000_000)
     assert put[resource.RLIMIT_CPU] == (70, 70)
+    hard[resource.RLIMIT_CPU] = 0
+    bounds.limit_myself(0)
+    assert put[resource.RLIMIT_CPU] == (0, 0)
 
 
 @pytest.mark.parametrize(
@@ -332,6 +337,10 @@ def test_what_motion_shows_is_told_with_what_it_did_not_show(names, held):
     words = closing_in_motion.motion_in_words(result).splitlines()
     assert words[0].startswith("found: nothing in motion; gravity sees 3.00 deg/min")
     assert "not seen in this motion: scale of x, y from z" in words
+    result["effects"] = [{"effect": "scale-factor", "confidence": "confirmed"}]
+    for unit, seen_by in ((GIVEN, "reference"), (GRAVITY, "gravity")):
+        told["unit"] = UNIT[unit]
+        assert f"{seen_by} sees 3.00 -> 3.00" in closing_in_motion.motion_in_words(result)
 
 
 def test_the_last_recording_is_held_out_unless_another_is_named(monkeypatch):

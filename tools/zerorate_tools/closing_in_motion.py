@@ -49,8 +49,7 @@ def write_in_motion(
     scales = open_recording(logs[0]).scales
     slots = slots_of(InMotion(shown))
     model = build_model(slots, scales, binding=binding_of(scales))
-    at = len(logs) - 1 if holdout is None else holdout
-    held = {Path(log).name for i, log in enumerate(logs) if i == at or len(logs) == 1}
+    held = {Path(logs[-1 if holdout is None or len(logs) == 1 else holdout]).name}
     writer = CorrectedWriter(folder / "corrected.parquet")
     for log in logs:
         _correct(writer, Path(log), model, Path(log).name in held)
