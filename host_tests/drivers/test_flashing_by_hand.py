@@ -165,6 +165,7 @@ def test_no_command_is_too_long_for_a_small_board(flashed):
     ("number", "mpy", "architecture"),
     [
         (0x1306, (6, 3), "armv6m"),
+        (0x1305, (5, 3), "armv6m"),
         (0x2E06, (6, 2), "rv32imc"),
         (0x0006, (6, 0), ""),
         (0x3506, (6, 1), ""),
@@ -209,11 +210,13 @@ def test_machine_code_that_does_not_run_is_done_without(flashed, monkeypatch, ru
 @pytest.mark.parametrize(
     ("mpy", "architecture", "told"),
     [((6, 1), "armv6m", True), ((6, 2), "rv32imc", True), ((6, 3), "armv6m", False)]
-    + [((6, 2), "xtensawin", False), ((5, 0), "armv6m", False)],
+    + [((6, 2), "xtensawin", False), ((5, 0), "armv6m", False), ((6, 4), "armv6m", False)],
 )
 def test_a_micropython_too_old_for_machine_code_is_told(mpy, architecture, told):
-    lines = flashing.older(BoardFacts(version=(1, 22, 0), mpy=mpy, architecture=architecture))
+    facts = BoardFacts(version=(1, 22, 0), mpy=mpy, architecture=architecture)
+    lines = flashing.older(facts)
     assert bool(lines) == told
+    assert compiling.machine_code(facts) == ("thumb" if mpy == (6, 3) else "")
     cycles = needs()["cycles"]
     slower = cycles["bytecode"] / cycles["median"]
     for line in lines:
@@ -236,8 +239,9 @@ def test_a_file_that_is_not_there_is_one_line_before_anything_is_written(option)
         flashing.flash("/dev/no-such-port", **{option: Path("nowhere")})
 
 
-def test_a_board_of_another_mpy_version_gets_the_source():
-    found = compiling.board_files([REST], BoardFacts(mpy=(7, 0)))
+@pytest.mark.parametrize("version", [5, 7])
+def test_a_board_of_another_mpy_version_gets_the_source(version):
+    found = compiling.board_files([REST], BoardFacts(mpy=(version, 0)))
     assert {name.suffix for name in found} == {".py"}
 
 
@@ -275,7 +279,8 @@ def test_a_port_that_does_not_open_says_why(capsys, monkeypatch, tmp_path, pseud
 
 def test_who_listens_has_the_port_alone_and_sends_nothing(pseudo_terminal):
     board, port = pseudo_terminal
-    with listening(port):
+    with listening(port) as serial:
+        assert (serial.baudrate, serial.timeout) == (115200, 0.2)
         with pytest.raises(BoardError), listening(port):
             pass
         with pytest.raises(BlockingIOError):

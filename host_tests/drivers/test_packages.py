@@ -180,6 +180,9 @@ def test_two_names_that_meet_stay_two(files):
         attributes |= {n.name for n in ast.walk(tree) if isinstance(n, ast.FunctionDef)}
         after = [names.get(name, name) for name in attributes]
         assert len(after) == len(set(after)), path
+        for n in ast.walk(tree):
+            if isinstance(n, ast.Attribute) and n.attr in names and ast.unparse(n.value) != "self":
+                assert [*names.values()].count(names[n.attr]) == 1, "whose it is is not known"
 
 
 def test_a_constant_of_another_module_is_its_number(short):

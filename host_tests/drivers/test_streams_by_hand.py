@@ -10,7 +10,7 @@ from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050
 from zerorate_i2c.mpu6050 import MPU6050
 from zerorate_tools.boards import port
 from zerorate_tools.boards.connection import BoardError
-from zerorate_tools.boards.on_board.stream import Streamer
+from zerorate_tools.boards.on_board.stream import Streamer, every
 from zerorate_tools.boards.port import (
     MESSAGE,
     SAMPLE,
@@ -19,6 +19,7 @@ from zerorate_tools.boards.port import (
     BoardStream,
     FrameReader,
     encode,
+    sample_of,
 )
 from zerorate_tools.boards.recorder import COLUMNS, Recorded, Recorder, scales_of
 from zerorate_tools.model.model import NAMES
@@ -39,6 +40,7 @@ class Sent:
         return min(len(self.data), 97)
 
     def read(self, count):
+        assert count == max(1, self.in_waiting)
         data, self.data = self.data[:count], self.data[count:]
         return data
 
@@ -142,12 +144,30 @@ def test_what_a_board_streams_is_recorded_sample_by_sample(board):
     data = board(450, {})
     scales = BoardStream(Sent(data), "port").scales()
     assert (scales.sensor, scales.odr_hz, scales.temp_offset_degc) == ("MPU-6050", 100.0, 36.53)
-    assert 3 <= data.count(b'"part"') <= 5  # for who listens later
+    kinds = [kind for kind, _ in FrameReader().feed(data)]
+    before = {kinds[:at].count(SAMPLE) for at, kind in enumerate(kinds) if kind == SCALES}
+    assert before == {0, 199, 399}  # for who listens later
     rows, result = recorded(data)
     assert numbers(rows) == list(range(rows[0][-1], rows[0][-1] + len(rows)))
     assert len(rows) == result.samples >= 399 and {row[1:-1] for row in rows} == {tuple(WORDS)}
     assert rows[-1][0] / (len(rows) - 1) == pytest.approx(10000, rel=0.01)
     assert (result.dropped, result.lost, result.bytes_skipped, result.restarts) == (0, 0, 0, 0)
+
+
+def test_a_sample_of_a_board_is_a_frame_of_its_numbers(monkeypatch):
+    sent, slept = [], []
+    streamer = Streamer(None, lambda frame: sent.append(bytes(frame)))
+    streamer.sequence, streamer.sample = 65535, [*WORDS, 5]
+    streamer.send_sample(SUSPECT, (1 << 31) - 1)
+    streamer.send_sample(FRESH, 1 << 30)
+    streamer.send_text(MESSAGE, "x" * 300)
+    *samples, (_, text) = FrameReader().feed(b"".join(sent))
+    expected = [(65535, (1 << 30) - 1, SUSPECT), (0, 0, FRESH)]
+    assert [sample_of(of) for _, of in samples] == [(*e, (*WORDS, 5)) for e in expected]
+    assert text == b"x" * 255
+    monkeypatch.setattr("time.sleep", slept.append)
+    every(10_000)()
+    assert slept == [0.005]
 
 
 def test_a_brown_out_and_a_dead_bus_of_a_board_are_told(board):
@@ -211,8 +231,18 @@ def test_the_scales_come_behind_what_else_a_board_says():
     assert not any(isinstance(value, dict) for value in scales_of(HEADER).more.values())
 
 
-def test_a_board_that_says_too_few_of_its_registers_is_refused():
-    head = {**HEADER, "binding": [0] * (len(NAMES) - 1)}
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"binding": [0] * (len(NAMES) - 1)},
+        {"binding": [0] * (len(NAMES) + 1)},
+        {"odr_hz": None},
+        {"odr_hz": "fast"},
+        {"binding": [float("inf")] + [0] * (len(NAMES) - 1)},
+    ],
+)
+def test_a_board_whose_scales_cannot_be_read_is_refused(wrong):
+    head = {**HEADER, **wrong}
     with pytest.raises(BoardError, match="cannot be read"):
         BoardStream(Sent(encode(SCALES, json.dumps(head).encode())), "port").scales()
 
@@ -225,6 +255,7 @@ class Says:
         monkeypatch.setattr(port.time, "monotonic", lambda: self.seconds)
 
     def read(self, count):
+        assert count == 1
         self.seconds += 1
         answer = self.answers.pop(0) if self.answers else b""
         if isinstance(answer, Exception):
@@ -261,6 +292,8 @@ def test_all_that_was_counted_is_said_in_a_recordings_line():
     said = str(Recorded(samples=10, seconds=17.0, bytes_skipped=16, part="X", **counts))
     assert re.findall(r"\b1[1-6]\b", said) == ["11", "12", "13", "14", "15", "16"]
     assert not re.search("restart|bus|port|bytes", str(Recorded(samples=10, seconds=17.0)))
+    assert [Recorded(samples=n, seconds=s).rate_hz for n, s in ((3, 0.5), (1, 0))] == [4, 0]
+    assert Recorded() == Recorded(0, 0, 0, 0, 0, 0, 0, 0.0, "")
 
 
 STEADY_US = np.arange(1000) * 10000
@@ -273,6 +306,8 @@ JITTER_US = np.random.default_rng(1).uniform(-4500, 4500, 1000)
         pytest.param(STEADY_US, 0, id="steady"),
         pytest.param(STEADY_US * 0.97, 0, id="a clock 3 % slow"),
         pytest.param(STEADY_US * 1.03, 0, id="a clock 3 % fast"),
+        pytest.param(STEADY_US * 1.0615, 0, id="late by half a period less an eighth's pull"),
+        pytest.param(STEADY_US[:99] * 1.064, 2, id="and by more"),
         pytest.param(STEADY_US + JITTER_US, 0, id="jitter"),
         pytest.param(np.delete(STEADY_US, 300), 1, id="one is missing"),
         pytest.param(np.delete(STEADY_US, range(300, 317)), 17, id="17 are missing"),
@@ -313,6 +348,8 @@ def test_a_sample_of_another_length_holds_no_later_one_back(length):
     good = encode(SAMPLE, bytes(range(21)))
     damaged = good[:3] + bytes([length]) + good[4:]
     assert len(list(FrameReader().feed(damaged + good + good))) == 2
+    of_no_kind = [encode(SAMPLE, bytes(length)), encode(0, bytes(21)), encode(4, bytes(21))]
+    assert FrameReader().feed(b"".join(of_no_kind)) == []
 
 
 def test_no_single_changed_byte_gives_a_false_frame():

@@ -114,11 +114,12 @@ class FifoFeed:
         self._imu = imu
         self._fifo = Fifo(imu)
         self._t_us = 0
-        self._pause_ms = max(1, imu.period_us * imu.fifo_bytes // 14 // 4000)
+        # a quarter of what the FIFO holds, in frames of 14 bytes
+        self._pause_ms = min(100, imu.period_us * imu.fifo_bytes // 56_000)
 
     def has_frames(self) -> bool:
         """Frames come out of the FIFO within five periods."""
-        self._imu.clock.sleep_ms(-(-5 * self._imu.period_us // 1000))
+        self._imu.clock.sleep_ms(self._imu.period_us / 200)
         count = bytearray(2)
         self._imu.read_into(0x72, count)
         return count != b"\0\0"
@@ -131,7 +132,7 @@ class FifoFeed:
         """Status, time and whether there is a sample; waits when there is none."""
         status = self._fifo.read(sample)
         if status == EMPTY:
-            self._imu.clock.sleep_ms(min(self._pause_ms, 100))
+            self._imu.clock.sleep_ms(self._pause_ms)
         elif status != RESTARTED:
             self._t_us += self._fifo.dt_us
         return status, self._t_us, status in (FRESH, VERIFIED)

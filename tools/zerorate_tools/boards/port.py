@@ -2,6 +2,7 @@
 
 import json
 import struct
+import sys
 import time
 from binascii import crc32
 from collections.abc import Callable
@@ -117,7 +118,7 @@ class BoardStream:
         return None
 
     def _take(self, recorder: SampleTaker, kind: int, payload: bytes) -> None:
-        if kind == SAMPLE and len(payload) == SAMPLE_BYTES:
+        if kind == SAMPLE:
             self._take_sample(recorder, payload)
         elif kind == MESSAGE and payload.startswith(b"restarted"):
             recorder.result.restarts += 1
@@ -133,11 +134,12 @@ class BoardStream:
         if self._sequence is not None:
             recorder.result.dropped += (sequence - self._sequence - 1) % 65536
         self._sequence = sequence
-        if status & ~_SEEN_BEFORE == _VERIFIED:
+        was_seen, status = divmod(status, _SEEN_BEFORE)
+        if status == _VERIFIED:
             recorder.confirm()
-        if status & ~_SEEN_BEFORE == _SUSPECT:
+        if status == _SUSPECT:
             recorder.result.doubtful += 1
-        elif not status & _SEEN_BEFORE:
+        elif not was_seen:
             recorder.add(self._t_us, words)
 
     def _frames(self) -> list[tuple[int, bytes]]:
@@ -201,7 +203,7 @@ def _end(held: bytes, at: int) -> int:
     if not _SYNC.startswith(head[: len(_SYNC)]):
         return at
     if len(head) < _HEAD:
-        return len(held) + 1
+        return sys.maxsize
     kind, length = head[_KIND:]
     if kind in (SCALES, MESSAGE) or (kind, length) == (SAMPLE, SAMPLE_BYTES):
         return at + _HEAD + length + _CRC
