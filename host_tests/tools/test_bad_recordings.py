@@ -2,7 +2,9 @@
 
 import math
 import re
+from types import SimpleNamespace
 
+import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
@@ -10,6 +12,7 @@ from zerorate_tools.errors import BadRecording
 from zerorate_tools.recordings import open_recording, read_recording, write_recording
 from zerorate_tools.recordings.checks import GAP
 from zerorate_tools.recordings.parquet_format import batches, open_file
+from zerorate_tools.recordings.reading import whole
 
 from .test_recordings import a_recording
 
@@ -42,6 +45,7 @@ _SCALES = '{"sensor": "X", "odr_hz": %s, "gyro_lsb_per_dps": 1}'
             f"{HEADER}\n0,1,2,3\n1,1,2\n2,1,2,3\n3,1,x,3\n",
             "row 2: 3 cells where the header names 4",
         ),
+        (f"{HEADER}\n0,1,2,3\n1,1\n2,1,2\n", "row 2: 2 cells where the header names 4"),
         (f"{HEADER}\n5,1,2,3\n9,1,2,3\n7,1,2,3\n", "row 3: time goes .* from 9 to 7 us; sort or"),
         (f"{HEADER}\n0,1,2,3\n1,99999999999,2,3\n", "row 2: gx is 99999999999, more than 32 bits"),
         (f"{HEADER}\n0,1,2,3\n1,99999999999999999999,2,3\n", "bad.csv"),
@@ -147,6 +151,26 @@ def test_damage_within_a_parquet_is_refused(tmp_path):
     file = open_file(tmp_path / "run.parquet")
     with pytest.raises(BadRecording, match="the Parquet data is damaged; copy"):
         list(batches(file, tmp_path / "run.parquet", 1000))
+
+
+def test_pages_that_take_too_much_memory_are_refused(tmp_path, monkeypatch):
+    def beyond(*_, **__):
+        raise MemoryError
+
+    (tmp_path / "x.parquet").write_bytes(b"PAR1")
+    monkeypatch.setattr(pq, "ParquetFile", beyond)
+    with pytest.raises(BadRecording, match="a page of it takes more than"):
+        open_file(tmp_path / "x.parquet")
+    file = SimpleNamespace(iter_batches=lambda **_: map(beyond, [1]))
+    with pytest.raises(BadRecording, match="a page of it takes more than"):
+        list(batches(file, tmp_path / "x.parquet", 1))
+
+
+def test_a_recording_is_held_in_400_megabytes_at_most(tmp_path):
+    parts = [{"gx": np.broadcast_to(np.int8(0), n)} for n in (399_999_999, 1, 1)]
+    assert whole(parts[:2], [], tmp_path) == {}
+    with pytest.raises(BadRecording, match="more than 400 MB; read it in batches"):
+        whole(parts, [], tmp_path)
 
 
 def test_a_parquet_without_scales_is_refused(tmp_path):
