@@ -44,6 +44,26 @@ def test_allan_prints_mdps_of_each_length_and_the_lowest(stands_in, capsys):
     assert [float(n) for n in floor.split()[1:]] == numbers[:, 1:].min(axis=0).tolist()
 
 
+def test_replay_prints_the_shares_of_verdicts_and_sources_and_what_explains_them(stands_in, capsys):
+    done = {"verdicts": {"still": 3, "moving": 1}, "sources": {"none": 4}, "explanation": "a\nb"}
+    stands_in("zerorate_tools.replay.replay", SimpleNamespace(samples=4, **done))
+    assert cli.main(["replay", "run.parquet", "--out", "o.parquet"]) == 0
+    assert capsys.readouterr().out.splitlines() == [
+        "o.parquet: 4 samples",
+        "  verdicts: still 3 (75.0%), moving 1 (25.0%)",
+        "  source of the bias: none 4 (100.0%)",
+        "  a",
+        "  b",
+    ]
+
+
+def test_import_prints_what_became_of_each_file(stands_in, capsys):
+    report = SimpleNamespace(lines=lambda: ["4 samples", "left aside: x"])
+    stands_in("zerorate_tools.importers.import_recording", report)
+    assert cli.main(["import", "s.py", "--out", "o.csv"]) == 0
+    assert capsys.readouterr().out == "o.csv\n  4 samples\n  left aside: x\n"
+
+
 def test_what_was_watched_is_drawn_where_that_is_asked(stands_in, capsys):
     stands_in("zerorate_tools.watch.watching.watch", "live")
     draw = stands_in("zerorate_tools.watch.screen.draw")
@@ -120,10 +140,13 @@ def test_each_chapter_of_the_demo_is_read_while_the_next_is_made_and_1_says_that
     assert [path for path, _ in files] == [Path("deep/model.json"), Path("deep/demo.png")]
 
 
-def test_an_interpreter_of_ones_own_is_not_fetched(stands_in, capsys):
+@pytest.mark.parametrize(("runtime", "fetched"), [("./mine", False), ("armhf", True)])
+def test_an_interpreter_that_was_asked_for_is_none_other_and_ones_own_is_not_fetched(
+    stands_in, capsys, runtime, fetched
+):
     stands_in("zerorate_tools.runtimes.find", MissingRuntime("not there"))
-    fetch = stands_in("zerorate_tools.runtimes.fetch")
-    assert cli.main(["demo", "--runtime", "./mine"]) == 2 and not fetch.called
+    fetch = stands_in("zerorate_tools.runtimes.fetch", MissingRuntime("not there either"))
+    assert cli.main(["demo", "--runtime", runtime]) == 2 and fetch.called is fetched
     assert "not there" in capsys.readouterr().err
 
 

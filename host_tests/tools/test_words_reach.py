@@ -124,7 +124,7 @@ def test_a_function_is_given_what_was_typed(stands_in, words, function, given):
 @pytest.mark.parametrize(
     ("words", "total"),
     [
-        *(("close a.csv b.csv --out o", 4), ("compare a.csv b.csv", 6)),
+        *(("close a.csv --out o", 2), ("compare a.csv b.csv", 6)),
         *(("fleet run.parquet --out o", 1), ("replay run.parquet --out o.parquet", 4)),
         *(("import s.py --out o.csv", 7), ("import none.csv --out o.csv", None)),
         *(("record 0 --out o.csv --seconds 9", 9), ("record 0 --out o.csv", None)),
@@ -180,10 +180,14 @@ def test_words_that_cannot_be_meant_are_refused(words):
 
 
 @pytest.mark.parametrize(
-    "words", ["export c o --odr-hz -1", "watch P --own --model m", "watch P --own --setup s"]
+    ("words", "said"),
+    [
+        ("export c o --odr-hz -1", "odr_hz"),
+        *((f"watch P --own {words}", "--own leaves") for words in ("--model m", "--setup s")),
+    ],
 )
-def test_what_the_function_could_not_do_ends_with_2(words):
-    assert cli.main(words.split()) == 2
+def test_what_the_function_could_not_do_ends_with_2(words, said, capsys):
+    assert cli.main(words.split()) == 2 and said in capsys.readouterr().err
 
 
 # --- numbers ---
@@ -234,7 +238,9 @@ def test_json_has_plain_values_and_null_where_there_is_no_number(capsys):
             "frozen": frozenset([4]),
         }
     )
-    assert json.loads(capsys.readouterr().out) == {
+    printed = capsys.readouterr().out
+    assert printed.startswith('{\n "1": {\n  "path"')
+    assert json.loads(printed) == {
         "1": {"path": "a/b", "numbers": [1, 0.5, [0, 1]]},
         "none": [None, None, None, True, None, "text"],
         "set": [3],

@@ -67,7 +67,7 @@ def get_ready(runtime: str) -> None:
     except MissingRuntime:
         if runtime not in NAMES:
             raise
-        print(f"fetching MicroPython ({runtime}), once ...", file=sys.stderr, flush=True)
+        print(f"fetching MicroPython ({runtime}), once ...", file=sys.stderr)
         with waiting(f"fetching MicroPython ({runtime})"):
             fetch(runtime)
 
