@@ -158,3 +158,11 @@ def test_no_online_is_written_unless_it_was_asked_for(tmp_path, power_on):
         ("s.parquet", [True, True], ["after", "before"]),
         ("s.parquet", [False, False], ["after", "before", "online"]),
     ]
+
+
+def test_a_tick_begins_with_its_first_sample(power_on):
+    late = replace(power_on, session=replace(power_on.session, start_us=999))
+    (frames,) = late.frames()
+    step_us = round(late.session.tick_s * 1e6)
+    at_us = 999 + np.array([0, step_us - 1, step_us, 3 * step_us - 1])
+    assert late.ticks(replace(frames, t_us=at_us)).tolist() == [0, 0, 1, 2]

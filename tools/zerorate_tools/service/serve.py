@@ -81,9 +81,8 @@ class Service:
         self._bias_lsb = array("i", bytes(12))
         self._newest_us: int | None = None
         self._published_us: int | None = None
-        self._is_stored = False
         self._said_lost = False
-        self._told_us = system.clock.ticks_us() - _ALIVE_US
+        self._told_us: int | None = None
 
     def step(self) -> None:
         """Take the next sample, or wait a moment; returns soon whatever the bus does."""
@@ -154,7 +153,7 @@ class Service:
     def _alive(self) -> None:
         clock = self.system.clock
         now_us = clock.ticks_us()
-        if clock.ticks_diff(now_us, self._told_us) >= _ALIVE_US:
+        if self._told_us is None or clock.ticks_diff(now_us, self._told_us) >= _ALIVE_US:
             self._told_us = now_us
             self._notify("WATCHDOG=1")
 

@@ -198,7 +198,7 @@ def _rounding(analysis, power_ons, scales):
         return np.zeros(3)
     terms = analysis.selection.terms
     coefficients = analysis.coefficients[len(analysis.selection.straight) :]
-    holdout = next(p for p in power_ons if p.session.name == analysis.holdout[0].name)
+    holdout = {p.session.name: p for p in power_ons}[analysis.holdout[0].name]
     at_rest = model_of(analysis, scales, effects=len(analysis.selection.found))
     return rounding_dps(holdout, at_rest, terms, coefficients, scales)
 
