@@ -300,3 +300,23 @@ def test_a_number_of_a_file_that_kernels_cannot_hold_is_not_put(value, fits):
     e = array("i", [0] * 4)
     assert model_file.put(e, 1, 2, struct.pack("<3i", 9, 5, value), 4) is fits
     assert list(e) == [0, 5, value if fits else 0, 0]
+
+
+@pytest.mark.parametrize(
+    ("changes", "coefficients", "degc"),
+    [
+        ({}, (0.1, 0.1, 0.1), 25),
+        ({}, (0.1, 0.0, 0.1), 0),
+        ({"knot": 0.0}, (0.1, 0.1, 0.1), 0),
+        ({"power": 2}, (0.1, 0.1, 0.1), 0),
+        ({"table": TABLE}, (0.1, 0.1, 0.1), 0),
+        ({"memory": "peak"}, (0.1, 0.1, 0.1), 0),
+    ],
+)
+def test_a_plain_line_over_temperature_on_every_axis_has_a_range_and_nothing_else(
+    changes, coefficients, degc
+):
+    effects = EffectModel()
+    line = Slot(Term("temp", 20, 45, 30, **changes), coefficients)
+    assert effects.load(encoded(build_model([line], SCALES)), Sensor()) == LOADED
+    assert effects.e[EFFECTS.CURVE_LSB] == pytest.approx(340 * degc, abs=2)
