@@ -112,6 +112,18 @@ class TestEdges:
         assert edge.bench.read() == VERIFIED  # asked for its settings, which it kept
 
 
+def test_samples_that_pass_without_interrupts_are_counted_by_their_time(bench, ready):
+    bench.clock.advance_us(10000)
+    ready.take()
+    handler, bench.chip.interrupt = bench.chip.interrupt, lambda: None
+    bench.clock.advance_us(90000)  # as while flash is written
+    bench.chip.interrupt = handler
+    bench.clock.advance_us(10000)
+    assert ready.take()
+    assert ready.missed == 9
+    assert ready.dt_us == 100000
+
+
 def test_a_chip_that_lost_its_power_is_set_up_again_by_the_next_read(bench, ready):
     for _ in range(3):
         assert ready.wait(20) and bench.imu.read(bench.sample) in (FRESH, VERIFIED)
@@ -120,3 +132,9 @@ def test_a_chip_that_lost_its_power_is_set_up_again_by_the_next_read(bench, read
     assert ready.dt_us == 0
     assert bench.imu.read(bench.sample) == RESTARTED
     assert ready.wait(50) and bench.imu.read(bench.sample) == FRESH
+
+
+def test_the_interrupt_survives_a_restart(bench, ready):
+    bench.imu.restart()
+    ready.take()
+    assert ready.wait(20)

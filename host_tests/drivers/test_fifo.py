@@ -195,6 +195,34 @@ def test_silence_of_more_than_sixteen_periods_restarts_the_chip(by_hand, late_us
     assert by_hand.imu.restarts == late_us
 
 
+def test_an_odd_period_begins_half_a_period_ago(by_hand):
+    by_hand.imu.period_us = 9999
+    by_hand.fifo._begin(0)
+    by_hand.frames(1)
+    assert by_hand.read(9999 - 5000)[2] == 9999
+
+
+def test_bytes_over_are_misaligned_when_they_stay(by_hand):
+    by_hand.frames(2)
+    by_hand.chip.fifo.put(1)
+    assert by_hand.read(15000)[0] == EMPTY
+    fifo = by_hand.fifo
+    assert (fifo.lost, fifo.overflows, fifo.misalignments) == (2, 0, 1)
+    assert (by_hand.chip.fifo.count, by_hand.chip.registers[0x6A]) == (0, 0x40)
+
+
+def test_only_the_first_frame_of_a_batch_tells_of_the_read_back(by_hand):
+    by_hand.imu._until_check = 0
+    by_hand.frames(3)
+    assert [by_hand.read(25000)[0] for _ in range(3)] == [VERIFIED, FRESH, FRESH]
+
+
+def test_a_frame_that_waits_is_no_silence(by_hand):
+    by_hand.frames(1)
+    assert by_hand.read(200000)[0] == FRESH
+    assert by_hand.imu.suspects == 0
+
+
 def test_a_batch_is_never_read_twice(by_hand):
     by_hand.frames(3)
     by_hand.bench.bus.fault("gone", skip=2, at_byte=20)

@@ -116,11 +116,11 @@ def test_a_chip_is_reset_written_read_back_and_waited_for(part, start_up_ms, kep
     assert (imu.read_backs, imu.restarts) == (2, 1)
 
 
-# Factory codes, and the response in LSB that they stand for. Codes 16 on all axes of an MPU-6050:
-# 4096 * 0.34 * (0.92/0.34)**0.5 = 2290.8 and 25 * 131 * 1.046**15 = 6429.8 LSB;
+# Factory codes, and the response in LSB that they stand for. Codes 17, 18 and 19 of an MPU-6050:
+# 4096 * 0.34 * (0.92/0.34)**(16/30) and so on; 16 of its gyro 25 * 131 * 1.046**15 = 6429.8 LSB;
 # codes 101 of an MPU-6500 2620 * 1.01**100 = 7086.6 LSB.
 GOOD = {
-    "MPU-6050": ([4 << 5 | 16] * 3 + [0], [2291, 2291, 2291, 0, 6430, -6430, 6430]),
+    "MPU-6050": ([4 << 5 | 16] * 3 + [0b01_10_11], [2368, 2448, 2531, 0, 6430, -6430, 6430]),
     "MPU-6500": ([101, 101, 101, 0], [7087, 7087, 7087, 0, 7087, 7087, 7087]),
 }
 
