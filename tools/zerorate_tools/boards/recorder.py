@@ -1,5 +1,6 @@
 """Rows of a recording being made: written, and believed, only when the chip was verified."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
@@ -67,19 +68,21 @@ class Recorded:
 Heard = Callable[[Scales], Callable[[Columns], None]]
 
 
-class SampleTaker:
+class SampleTaker(ABC):
     """What a board or a bus can stream into: a Recorder keeps samples."""
 
     def __init__(self, result: Recorded) -> None:
         self.result = result
 
+    @abstractmethod
     def add(self, t_us: int, sample: Sequence[int]) -> None:
         """One sample of seven words at t_us on any clock."""
-        raise NotImplementedError
 
+    @abstractmethod
     def confirm(self) -> None:
         """All since the last call are good."""
 
+    @abstractmethod
     def discard(self) -> None:
         """All since the last call are in doubt."""
 

@@ -152,6 +152,12 @@ class Watcher(SampleTaker):
         self._looked = time.monotonic()
         self._shown.show(self.live, [])
 
+    def confirm(self) -> None:
+        """The chip was configured right: nothing to do, for nothing is kept."""
+
+    def discard(self) -> None:
+        """It was not, perhaps: the firmware's guard has seen it too."""
+
 
 def watch_board(source: str, options: WatchOptions) -> Live | None:
     """Watch a board's port or a Linux bus: see `watch`."""
