@@ -9,7 +9,6 @@ from array import array
 from contextlib import suppress
 from html.parser import HTMLParser
 from pathlib import Path
-from time import monotonic
 
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -157,15 +156,21 @@ STARTS = {
 }
 
 
+def processor_s():
+    """Seconds of processor that this process and its children have taken."""
+    times = os.times()
+    return times.user + times.system + times.children_user + times.children_system
+
+
 @pytest.mark.parametrize("name", [*STARTS, "none.ulg", "none.mcap"])
 def test_gigabytes_of_zeros_are_refused_after_their_start(tmp_path, name):
     with open(tmp_path / name, "wb") as file:
         file.write(STARTS.get(name, b""))
         file.truncate(3 << 30)
-    began_s = monotonic()
+    began_s = processor_s()
     with pytest.raises(BadRecording, match=name):
         read_foreign(tmp_path / name)
-    assert monotonic() - began_s < 20
+    assert processor_s() - began_s < 20, "a child alone may take a minute"
 
 
 ANY_TEXT = st.text(st.characters())  # halves of characters, too, which JSON can hold
