@@ -21,7 +21,7 @@ from zerorate_bench.service import run
 from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050, Physical
 from zerorate_i2c.fifo import EMPTY, Fifo
 from zerorate_i2c.mpu6050 import MPU6050
-from zerorate_tools.errors import ZerorateError
+from zerorate_tools.errors import MissingLibrary, ZerorateError
 from zerorate_tools.importers import read_foreign
 from zerorate_tools.layout import AXIS, axis_at
 from zerorate_tools.model import Slot, build_model, write_model
@@ -90,6 +90,19 @@ class Board:
         end_us = self.clock.now_us + seconds * 1e6
         while self.clock.now_us < end_us:
             self.service.step()
+
+
+@pytest.fixture(autouse=True)
+def fails_late():
+    """A test that waits for what never comes fails after a minute."""
+
+    def late(*_):
+        raise TimeoutError
+
+    before, left_s = signal.signal(signal.SIGALRM, late), signal.alarm(60)
+    yield
+    signal.alarm(left_s)
+    signal.signal(signal.SIGALRM, before)
 
 
 @pytest.fixture
@@ -171,7 +184,7 @@ def test_what_it_publishes_is_imported_as_the_chip_gave_it(board, tmp_path):
     (tmp_path / "service.jsonl").write_text("\n".join(map(json.dumps, lines)))
     recording, _ = read_foreign(tmp_path / "service.jsonl")
     rates = np.column_stack([recording.columns[axis] for axis in ("gx", "gy", "gz")])
-    assert rates.tolist() == given[-len(lines) :] and len(lines) > 100
+    assert rates.tolist() == given[-len(lines) :] and board.service.samples == len(lines) > 100
     assert (
         np.diff(recording.columns["t_us"]).tolist() == np.diff([x["t_us"] for x in lines]).tolist()
     )
@@ -182,7 +195,7 @@ def asked(port):
         return dict(line.rsplit(" ", 1) for line in answer.read().decode().splitlines())
 
 
-def test_prometheus_has_the_newest_line_and_a_port_in_use_is_one_line(board):
+def test_prometheus_has_the_newest_line_and_a_port_in_use_is_one_line(board, monkeypatch):
     pytest.importorskip("prometheus_client")
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
@@ -205,6 +218,9 @@ def test_prometheus_has_the_newest_line_and_a_port_in_use_is_one_line(board):
         metrics.close()
     with pytest.raises(ZerorateError, match="--remote"):
         Metrics("192.0.2.1:9751")
+    monkeypatch.setitem(sys.modules, "prometheus_client", None)
+    with pytest.raises(MissingLibrary):
+        Metrics(f"127.0.0.1:{port}")
 
 
 def reader_of(path):
@@ -218,7 +234,9 @@ def test_a_thousand_readers_end_nobody(tmp_path):
     sink, readers = UnixSocket(path), []
     for _ in range(1000):
         readers.append(reader_of(path))
-        sink.put(b"{}\n")
+        if len(readers) % 2:  # they come in twos
+            sink.put(b"{}\n")
+    sink.put(b"{}\n")
     assert sink.refused == 900
     for reader in readers:
         reader.close()
@@ -250,12 +268,18 @@ def test_without_a_descriptor_left_a_reader_waits_and_the_service_lives(tmp_path
 def test_a_living_socket_is_not_taken_over_and_a_dead_one_is(tmp_path):
     path = tmp_path / "imu.sock"
     sink = UnixSocket(path)
+    sink._server.listen(0)
+    waiting = reader_of(path)  # and no more can
     with pytest.raises(ZerorateError, match="imu.sock: a service answers there; end it"):
         UnixSocket(path)
+    waiting.close()
     sink._server.close()  # killed: the file stays
     taken_over = UnixSocket(path)
     path.unlink()  # by somebody
     taken_over.close()
+    path.touch()
+    with pytest.raises(ZerorateError, match="imu.sock: Address already in use; name another"):
+        UnixSocket(path)
     with pytest.raises(ZerorateError, match="none: no such folder; make it"):
         UnixSocket(tmp_path / "none" / "imu.sock")
 
@@ -276,7 +300,10 @@ def test_a_pipe_whose_reader_sleeps_holds_nobody_up_and_gets_whole_lines():
             sink.put(json.dumps({"number": number, "more": "x" * 100}).encode() + b"\n")
             if number == 3000:
                 taken = os.read(reader, 30000)
-    *lines, begun = (taken + open(reader, "rb").read()).split(b"\n")
+        *lines, begun = (taken + os.read(reader, 1 << 20)).split(b"\n")
+        os.close(reader)
+        with pytest.raises(BrokenPipeError):
+            sink.put(b"{}\n")
     assert sink.lost == 5000 - len(lines) - bool(begun) > 1000
     assert json.loads(lines[-1])["number"] > 3000
 
@@ -301,6 +328,15 @@ def test_systemd_is_told_by_its_socket_with_a_file_or_without(tmp_path, monkeypa
         assert systemd.recv(100) == b"READY=1"
     monkeypatch.delenv("NOTIFY_SOCKET")
     notify("READY=1")
+
+
+def test_systemd_hears_every_two_seconds_that_the_service_lives(board):
+    heard = []
+    for wait_us in (0, 1_999_999, 1, 1, 2_500_000):
+        board.clock.now_us += wait_us
+        board.service._alive()
+        heard.append(len(board.told))
+    assert heard == [1, 1, 2, 2, 3]
 
 
 def test_a_bus_that_opens_but_is_none_leaves_no_descriptor(tmp_path):

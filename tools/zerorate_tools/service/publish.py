@@ -13,7 +13,7 @@ from ipaddress import IPv4Address, IPv6Address, ip_address
 from pathlib import Path
 from typing import Any, Protocol, TextIO
 
-from ..errors import InFile, MissingLibrary, ZerorateError
+from ..errors import InFile, MissingLibrary, ZerorateError, os_error_in_words
 
 #: Readers of a socket at once: the service keeps descriptors for its bus and its file.
 MOST_READERS = 100
@@ -53,24 +53,24 @@ class Lines:
 
     def put(self, line: bytes) -> None:
         """Write; where there is no room a line is lost whole, and one that was begun is ended."""
-        self._left = self._rest_of(self._left)
-        rest = self._rest_of(line) if not self._left else line
-        if rest == line:
-            self.lost += 1
+        self._left = self._left[self._sent(self._left) :]
+        sent = 0 if self._left else self._sent(line)
+        if sent:
+            self._left = line[sent:]
         else:
-            self._left = rest
+            self.lost += 1
 
-    def _rest_of(self, text: bytes) -> bytes:
-        """What did not go, without waiting for a reader of a pipe."""
+    def _sent(self, text: bytes) -> int:
+        """How many bytes went, without waiting for a reader of a pipe."""
         try:
             # a pipe that is writable takes a page, and a line is less than that
-            if text and select.select([], [self._descriptor], [], 0)[1]:
-                return text[os.write(self._descriptor, text) :]
+            if select.select([], [self._descriptor], [], 0)[1]:
+                return os.write(self._descriptor, text)
         except BrokenPipeError:
             raise
         except OSError:
             pass
-        return text
+        return 0
 
     def close(self) -> None:
         """The stream is its owner's."""
@@ -97,7 +97,7 @@ class Datagrams:
 
     def __init__(self, address: str, remote: bool = False) -> None:
         target, number = address_of("--udp", address, remote)
-        family = socket.AF_INET6 if target.version == 6 else socket.AF_INET
+        family = socket.AF_INET6 if isinstance(target, IPv6Address) else socket.AF_INET
         self._target = (str(target), number)
         self._socket = socket.socket(family, socket.SOCK_DGRAM)
         self._socket.setblocking(False)
@@ -135,7 +135,7 @@ class UnixSocket:
             self._server.bind(os.fspath(path))
         except OSError as error:
             self._server.close()
-            raise InFile(path, error.strerror or str(error), do="name another socket") from error
+            raise InFile(path, os_error_in_words(error), do="name another socket") from error
         self._server.listen()
         self._server.setblocking(False)
 
@@ -181,7 +181,7 @@ def _answers(path: Path) -> bool:
         caller.setblocking(False)
         try:
             caller.connect(os.fspath(path))
-        except (ConnectionRefusedError, FileNotFoundError):
+        except ConnectionRefusedError:
             return False
         except BlockingIOError:
             pass
@@ -209,8 +209,8 @@ class Metrics:
         try:
             self._server, self._thread = start_http_server(port, str(host), registry)
         except OSError as error:
-            do = "name another port"
-            raise ZerorateError(f"--metrics {address}: {error.strerror or error}; {do}") from error
+            why = f"{os_error_in_words(error)}; name another port"
+            raise ZerorateError(f"--metrics {address}: {why}") from error
 
     def put(self, line: bytes) -> None:
         """Keep it until the next one."""

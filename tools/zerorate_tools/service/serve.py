@@ -32,7 +32,7 @@ def notify(text: str) -> None:
     path = os.environ.get("NOTIFY_SOCKET", "")
     if path:
         with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as out:
-            out.connect("\0" + path[1:] if path[0] == "@" else path)
+            out.connect("\0" + path[1:] if path.startswith("@") else path)
             out.send(text.encode())
 
 
@@ -99,7 +99,7 @@ class Service:
             return
         dt_us = self._passed_us()
         self.t_us += dt_us
-        raw_lsb = self._sample[4:7]
+        raw_lsb = self._sample[4:]
         if self._corrector.update(self._sample, dt_us, status):
             self.samples += 1
             self._publish(raw_lsb)
@@ -195,12 +195,12 @@ class Service:
         if reason != LOADED:
             raise ZerorateError(f"--model: {MODEL_REASONS[reason]}")
         if effects.channels:
-            raise ZerorateError(f"--model: it follows the channel {effects.channels[0]}, not here")
+            raise ZerorateError(f"--model: it follows the channel {', '.join(effects.channels)}, not here")
         learner.use_model(effects)
 
     def _lose(self, error: OSError) -> None:
         """The bus has failed for good: what came since the last check is in doubt."""
-        if self._imu is not None or self.bus_failures == 0:
+        if self._imu is not None or not self.bus_failures:
             self.system.say(f"bus: {os_error_in_words(error)}; trying again every second")
         self.bus_failures += 1
         if self._corrector is not None:
@@ -233,7 +233,7 @@ class Service:
         lsb = imu.gyro_lsb_per_dps
         line = {
             "t_us": self.t_us,
-            "rate_dps": [round(left / lsb, 5) for left in sample[4:7]],
+            "rate_dps": [round(left / lsb, 5) for left in sample[4:]],
             "raw_dps": [round(raw / lsb, 5) for raw in raw_lsb],
             "bias_dps": [round(learner.bias_lsb(axis) / lsb, 5) for axis in range(3)],
             "accel_g": [round(force / imu.accel_lsb_per_g, 5) for force in sample[:3]],
