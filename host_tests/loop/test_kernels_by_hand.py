@@ -17,6 +17,7 @@ from .test_verify_by_hand import PER, SCALES, at_rest, effect, powered_on, selec
 
 VOLTS = Term("volt", 4000.0, 6000.0, 5000.0)
 LAGGED = replace(VOLTS, lag_mode="lag", lag_s=20.0)
+PLAY = replace(VOLTS, memory="play", width=100.0)
 BLOCKS = 60
 
 
@@ -60,7 +61,7 @@ def test_a_piece_s_error_is_that_of_a_device_that_has_not_learned_it(power_on):
     assert np.isnan(some[::7]).all() and some[1] == pytest.approx(left[1])
 
 
-@pytest.mark.parametrize("term", [VOLTS, LAGGED])
+@pytest.mark.parametrize("term", [VOLTS, LAGGED, PLAY])
 def test_a_piece_s_model_is_fitted_to_the_others_and_run_by_its_device(power_on, term):
     pieces = PiecesByKernels(power_on, SCALES)
     models = pieces.models([], [term])

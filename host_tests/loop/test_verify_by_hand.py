@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
+from zerorate_tools.layout import AXIS
 from zerorate_tools.loop.fit.noise import floor_dps
 from zerorate_tools.loop.fit.regression import Regression
 from zerorate_tools.loop.motion.scales_and_timing import InMotion
@@ -100,7 +101,7 @@ def test_every_sample_has_its_tick_and_block(tmp_path):
 def test_steps_are_taken_out_of_the_samples_in_whole_counts(tmp_path):
     columns = at_rest(blocks=6)
     plain = powered_on(tmp_path, columns)
-    level = np.zeros((6 * TICKS, 3))
+    level = np.zeros((6 * TICKS - 1, 3))  # the last goes on
     level[10:] = np.array([3.7, -2.25, 5.0]) / 131.0
     level[22:] = np.array([1.0, 2.0, -3.0]) / 131.0
     stepped = replace(plain, session=replace(plain.session, level_dps=level))
@@ -151,6 +152,8 @@ class Scripted:
     Its target is how many samples it has learned.
     """
 
+    offset = 0, 0, 0
+
     def __init__(self, known_after, third=True):
         self.known_after, self.third = known_after, third
         self.seen = self.taught = 0
@@ -167,7 +170,7 @@ class Scripted:
     def run(self, frames, learn=True):
         self.seen += len(frames)
         self.taught += len(frames) * learn
-        return np.repeat([[256, 0, 0]], len(frames), axis=0)
+        return np.repeat([np.add(self.offset, [256, 0, 0])], len(frames), axis=0)
 
     @property
     def offset_is_known(self):
@@ -220,6 +223,11 @@ def test_a_device_at_rest_knows_its_offset_and_it_is_what_differs_from_the_learn
     assert ready.offset_is_known.tolist() == [False] * 3
     ready.run(frames)
     assert ready.offset_is_known.tolist() == [True] * 3
+    for at, suspect in zip(ready._axes(), (-1, 0, 1)):
+        ready._corrector.state[at + AXIS.SUSPECT] = suspect
+    assert ready.offset_is_known.tolist() == [True, True, False]
+    ready.set_offset((1, -2, 3))
+    assert [ready._corrector.state[at + AXIS.OFFSET_Q8] for at in ready._axes()] == [1, -2, 3]
     assert ready.target_q8 / 256 == pytest.approx([55, -20, -15], abs=2)
 
 

@@ -70,7 +70,7 @@ class Analysis:
 
     def may_be_heat(self, i: int) -> bool:
         """Whether the i-th effect follows time alone, and no temperature tells it from warming."""
-        blind = "temp" not in self.sessions[0].sources
+        blind = all("temp" not in s.sources for s in self.sessions)
         return blind and not set(self.selection.found[i].candidate.sources) - {"time"}
 
 

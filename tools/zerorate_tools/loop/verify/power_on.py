@@ -39,7 +39,7 @@ class PowerOn:
 
     def _less(self, frames: Frames, level: np.ndarray) -> Frames:
         """The samples less the steps, (ticks, 3) LSB, in whole counts whose mean is the step's."""
-        counts = level[np.clip(self.ticks(frames), 0, len(level) - 1)]
+        counts = level[np.minimum(self.ticks(frames), len(level) - 1)]
         at = np.arange(len(frames))[:, None]
         whole = np.floor((at + 1) * (counts % 1.0)) - np.floor(at * (counts % 1.0))
         frames.frames[:, 4:] -= (np.floor(counts) + whole).astype(np.int32)
