@@ -405,6 +405,40 @@ def test_what_was_taken_from_every_axis_is_withdrawn_with_both_errors(three):
         assert name == "supply-voltage" and "grows: with it 2e+03 mdps, without 1e+03" in why
 
 
+@pytest.mark.parametrize(
+    ("better", "stays"),
+    [([1] * 5, True), ([1] * 4, False), ([3] * 6 + [-1] * 2, True), ([1, -2] * 10, False),
+     ([0.0] * 20, False), ([-1] * 20, False)],
+)  # fmt: skip
+def test_an_effect_that_helps_no_more_pieces_than_chance_is_withdrawn(three, better, stays):
+    def left(gained):  # one piece a block: the last in a recording of its own
+        dps = np.sqrt(10.0 - np.outer(gained, [1, 0, 0]))
+        return [dps[:-1], dps[-1:]]
+
+    pieces = [np.arange(len(better) - 1), np.zeros(1, int)]
+    one, after = three.first(1), [left(np.zeros(len(better))), left(better)]
+    less = prune.without_unshown(one, after, never, pieces)
+    if stays:
+        assert less is one
+    else:
+        [(name, why)] = less.withdrawn
+        assert not less.found and name == one.found[0].candidate.label
+        assert f"{sum(b > 0 for b in better)} of {len(better)} pieces" in why
+
+
+def test_of_two_effects_the_one_less_shown_goes_first(three):
+    def left(dps):
+        return [np.full((20, 3), dps)]
+
+    two, pieces = three.first(2), [np.arange(20)]
+    for alone, gone in ((0.5, 0), (2.0, None)):
+        less = prune.without_unshown(
+            two, [left(3.0), left(2.0), left(1.0)], lambda i, e=alone: left(e), pieces
+        )
+        assert len(less.found) == (2 if gone is None else 1)
+        assert gone is None or less.found == [two.found[1]]
+
+
 def test_what_a_session_held_out_speaks_against_is_withdrawn_with_both_errors(sessions):
     train = sessions[:3]
     last = replace(

@@ -33,7 +33,8 @@ Sink = Callable[[str, Frames, dict[str, np.ndarray]], None]
 class Course:
     """One session, block by block. bias, residual: (n, 3) dps by way: before, after, online and
     online_before, and after_K with the first K effects, in the sessions where it was run; residual
-    is NaN where it is not scored. offset_dps: (3,) taken at turn-on, before and after.
+    is NaN where it is not scored. offset_dps: (3,) taken at turn-on, before and after; pieces: (n,)
+    of which piece left out each block is, none where the session was held out whole.
     """
 
     time_s: np.ndarray
@@ -41,6 +42,7 @@ class Course:
     residual: dict[str, np.ndarray]
     offset_dps: dict[str, np.ndarray] = field(default_factory=dict)
     unscored: int = 0
+    pieces: np.ndarray = field(default_factory=lambda: np.zeros(0, int))
 
 
 @dataclass
@@ -188,6 +190,7 @@ class PieceRuns:
 
         course = scored(p, _means(p, ways, biases, sink))
         course.residual = {way: of.about_stretches(r) for way, r in course.residual.items()}
+        course.pieces = np.r_[0, np.diff(of.fold) != 0].cumsum()
         return course
 
 

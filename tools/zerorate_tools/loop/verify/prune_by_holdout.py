@@ -13,6 +13,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
+from scipy.stats import wilcoxon
 
 from ..read.sessions import Session
 from ..search.drift_test import comes_again, follows_time
@@ -20,6 +21,8 @@ from ..search.selection import Selection
 from .judge import Judgement, judge, residuals, rms_dps
 
 AGAIN = "it does not come again alike in what was held out"
+#: The usual level of one test.
+_LEVEL = 0.05
 
 
 def prune_by_holdout(selection: Selection, holdout: list[Session]) -> tuple[Selection, Judgement]:
@@ -106,3 +109,37 @@ def _spoken_against(selection: Selection, judgement: Judgement, i: int) -> str |
 def _said(reason: str, judgement: Judgement, without: Judgement) -> str:
     with_it, now = 1e3 * judgement.after_rms, 1e3 * without.after_rms
     return f"{reason}: error with it {with_it:.3g} mdps, without {now:.3g}"
+
+
+def without_unshown(
+    selection: Selection,
+    after: Sequence[list[np.ndarray]],
+    without: Callable[[int], list[np.ndarray]],
+    pieces: Sequence[np.ndarray],
+) -> Selection:
+    """The selection without the effect that pieces left out show least, if noise alone gains as
+    much in as many of them once in twenty times; else the selection itself.
+
+    after, without: as of `without_harmful`; pieces: (n,) of each recording, which piece
+    each block is of.
+    """
+    if not selection.found:
+        return selection
+    rest = [*map(without, range(len(selection.found) - 1)), after[-2]]
+    gained = [_gained(left, after[-1], pieces) for left in rest]
+    chances = [float(wilcoxon(g, zero_method="zsplit", alternative="greater")[1]) for g in gained]
+    least = int(np.argmax(chances))
+    if chances[least] <= _LEVEL:
+        return selection
+    better = (
+        f"{(gained[least] > 0).sum()} of {len(gained[least])} pieces left out are better with it"
+    )
+    said = selection.found[least].candidate.label, f"{better}, as by chance"
+    less = selection.without(least)
+    return replace(less, withdrawn=[*less.withdrawn, said])
+
+
+def _gained(before, after, pieces) -> np.ndarray:
+    """(pieces,) dps^2 less over the blocks of each piece of all recordings."""
+    each = (np.nansum(b**2 - a**2, axis=1) for b, a in zip(before, after))
+    return np.concatenate([np.bincount(of, less) for of, less in zip(pieces, each)])

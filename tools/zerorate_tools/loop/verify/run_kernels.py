@@ -37,7 +37,7 @@ from .courses import (
 from .firmware import Firmware
 from .judge import Judgement, rms_dps
 from .power_on import BlockMeans, PowerOn, ideal_dps
-from .prune_by_holdout import without_harmful
+from .prune_by_holdout import without_harmful, without_unshown
 
 _AXES = ("gx", "gy", "gz")
 WAYS = ("before", "after", "online")
@@ -140,18 +140,22 @@ def _measured(analysis: Analysis, logs, scales: Scales, selection: Selection) ->
 def _without_harmful(
     selection: Selection, measured: Courses, again: Callable[[Selection], Courses]
 ):
-    """The selection without what the held-out sessions, or then the pieces, do worse with.
+    """The selection without what the held-out sessions, or then the pieces, do worse with, or what
+    pieces do no better with than by chance.
 
     again: measures another selection.
     """
     number = len(selection.found)
-    for names in ((), *([measured.inside] if measured.inside else [])):
+    for names in (measured.holdout, *([measured.inside] if measured.inside else [])):
         after = [measured.with_first(k, names) for k in range(number + 1)]
 
         def without(i: int, names=names):
             return again(selection.without(i)).with_first(number - 1, names)
 
         less = without_harmful(selection, after, without)
+        pieces = [measured.sessions[name].pieces for name in names]
+        if less is selection and all(map(len, pieces)):
+            less = without_unshown(selection, after, without, pieces)
         if less is not selection:
             return less
     return selection
