@@ -195,7 +195,8 @@ class Service:
         if reason != LOADED:
             raise ZerorateError(f"--model: {MODEL_REASONS[reason]}")
         if effects.channels:
-            raise ZerorateError(f"--model: it follows the channel {', '.join(effects.channels)}, not here")
+            names = ", ".join(effects.channels)
+            raise ZerorateError(f"--model: it follows the channel {names}, not here")
         learner.use_model(effects)
 
     def _lose(self, error: OSError) -> None:
