@@ -40,6 +40,8 @@ _SAME_OF_SMALL_INTEGERS = ("Eq_Is", "NotEq_IsNot")
 # At the limit both are the limit.
 _LIMIT = re.compile(r"(?:return|=) (.+) if \1 [<>] (.+) else \2$")
 _AT_LIMIT = ("Lt_LtE", "Gt_GtE")
+# In an index, 0 by name that is added, or added to.
+_ADDED, _ADDED_TO = re.compile(r"[\[(](\w+) \+ (\w+)[\])]"), ("BitOr", "BitXor")
 _LAYOUT = re.compile(r"^# layout: .*?^# layout: end", re.MULTILINE | re.DOTALL)
 
 # Numbers that are committed: what boards ask their machine code for, and what a trace ends in.
@@ -290,6 +292,8 @@ def same(mutant, text, mutated=""):
     """Why the mutant of a line, which makes another of it, means the same; or ""."""
     if mutant[1].endswith(_AT_LIMIT) and _LIMIT.search(text):
         return "at the limit both are the limit"
+    if mutant[1].rpartition("_")[0].endswith("Operator_Add") and _is_of_zero(*mutant, text, mutated):
+        return "what is added, or added to, is 0"
     for entry in _listed()["same"]:
         names = entry["operators"]
         there = mutant[0].startswith(entry["file"]) and mutated in entry.get("become", [mutated])
@@ -297,6 +301,18 @@ def same(mutant, text, mutated=""):
         if there and text in lines and mutant[1].rpartition("/")[2] in names:
             return entry["why"]
     return ""
+
+
+def _is_of_zero(file, operator, text, mutated):
+    """Whether another operator stands where an index adds 0 by name, and makes the same of it."""
+    source = (REPOSITORY / file).read_text(encoding="utf-8")
+    at = len(os.path.commonprefix([text, mutated]))
+    added = next((m for m in _ADDED.finditer(text) if m.start() < at < m.end()), None)
+    first, second = (f"{n} = const(0)\n" in source for n in added.groups()) if added else (0, 0)
+    become = operator.rpartition("_")[2]
+    return become in (*_ADDED_TO, *(("Sub", "LShift", "RShift") if second else ())) and (
+        first or second
+    )
 
 
 def _keyword_only(source):

@@ -262,8 +262,8 @@ def link(e, a, tables):
     e[a + _SLOT_INSTANT] = instant
     if instant:
         e[_INSTANT_SLOTS] += 1
-    other = e[a + _SLOT_MEMORY] | e[a + _SLOT_SECOND] | e[a + _SLOT_DECAY] | e[a + _SLOT_RING]
-    if kind == _KIND_TEMP and e[a + _SLOT_POWER] == 1 and not other | e[a + _SLOT_TABLE]:
+    others = (_SLOT_MEMORY, _SLOT_SECOND, _SLOT_DECAY, _SLOT_RING, _SLOT_TABLE)
+    if kind == _KIND_TEMP and e[a + _SLOT_POWER] == 1 and not any(e[a + i] for i in others):
         if e[a + _SLOT_KNOT] == _NO_VALUE and all(e[a + _SLOT_OWN : a + _SLOT_OWN + 3]):
             e[_CURVE_LSB] = (e[a + _SLOT_HIGHEST_Q8] - e[a + _SLOT_LOWEST_Q8]) >> 8
     return True
