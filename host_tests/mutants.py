@@ -40,8 +40,9 @@ _SAME_OF_SMALL_INTEGERS = ("Eq_Is", "NotEq_IsNot")
 # At the limit both are the limit.
 _LIMIT = re.compile(r"(?:return|=) (.+) if \1 [<>] (.+) else \2$")
 _AT_LIMIT = ("Lt_LtE", "Gt_GtE")
-# In an index, 0 by name that is added, or added to.
-_ADDED, _ADDED_TO = re.compile(r"[\[(](\w+) \+ (\w+)[\])]"), ("BitOr", "BitXor")
+# Of an index and 0 by name these make what + makes.
+_SUM = re.compile(r"[\[(](\w+) \+ (\w+)[\])]")
+_ZERO_FIRST, _ZERO_SECOND = ("BitOr", "BitXor"), ("BitOr", "BitXor", "Sub", "LShift", "RShift")
 _LAYOUT = re.compile(r"^# layout: .*?^# layout: end", re.MULTILINE | re.DOTALL)
 
 # Numbers that are committed: what boards ask their machine code for, and what a trace ends in.
@@ -292,7 +293,7 @@ def same(mutant, text, mutated=""):
     """Why the mutant of a line, which makes another of it, means the same; or ""."""
     if mutant[1].endswith(_AT_LIMIT) and _LIMIT.search(text):
         return "at the limit both are the limit"
-    if mutant[1].rpartition("_")[0].endswith("Operator_Add") and _is_of_zero(*mutant, text, mutated):
+    if _is_of_zero(*mutant, text, mutated):
         return "what is added, or added to, is 0"
     for entry in _listed()["same"]:
         names = entry["operators"]
@@ -305,14 +306,13 @@ def same(mutant, text, mutated=""):
 
 def _is_of_zero(file, operator, text, mutated):
     """Whether another operator stands where an index adds 0 by name, and makes the same of it."""
+    become, at = operator.partition("Operator_Add_")[2], len(os.path.commonprefix([text, mutated]))
+    sums = [m.groups() for m in _SUM.finditer(text) if m.start() < at < m.end()]
+    if not become or not sums:
+        return False
     source = (REPOSITORY / file).read_text(encoding="utf-8")
-    at = len(os.path.commonprefix([text, mutated]))
-    added = next((m for m in _ADDED.finditer(text) if m.start() < at < m.end()), None)
-    first, second = (f"{n} = const(0)\n" in source for n in added.groups()) if added else (0, 0)
-    become = operator.rpartition("_")[2]
-    return become in (*_ADDED_TO, *(("Sub", "LShift", "RShift") if second else ())) and (
-        first or second
-    )
+    first, second = (f"{name} = const(0)\n" in source for name in sums[0])
+    return (first and become in _ZERO_FIRST) or (second and become in _ZERO_SECOND)
 
 
 def _keyword_only(source):
