@@ -22,6 +22,7 @@ from zerorate_tools.boards.port import (
     sample_of,
 )
 from zerorate_tools.boards.recorder import COLUMNS, Recorded, Recorder, scales_of
+from zerorate_tools.errors import ZerorateError
 from zerorate_tools.model.model import NAMES
 from zerorate_tools.recordings import read_recording
 
@@ -208,11 +209,17 @@ def test_a_port_is_recorded_and_streamed_as_its_frames_say(board, monkeypatch, t
         found = port.record_port("port", out, setup="imu = 1", done=done)
         assert (found.samples, found.lost, found.part) == (len(read_recording(out)), 0, "MPU-6050")
     with pytest.raises(BoardError) if ends else nullcontext():
-        port.stream_port("port", take, done=done)
+        port.stream_port("port", take, done=done, odr_hz=50.0)
     columns = read_recording(out).columns
     assert rows == [*zip(*(columns[name].tolist() for name in COLUMNS))]
     assert rows[: len(alone)] == alone and (len(rows) == len(alone)) is ends
-    assert "imu = 1" in programs[0] and "I2C(0, freq=400000)" in programs[1]
+    assert "imu = 1" in programs[0]
+    assert "MPU6050(I2C(0, freq=400000), **{'odr_hz': 50.0})" in programs[1]
+
+
+def test_a_set_up_of_its_own_says_what_the_chip_is_set_to():
+    with pytest.raises(ZerorateError, match="--setup"):
+        port.stream_port("port", print, setup="imu = 1", odr_hz=50.0)
 
 
 HEADER = {"odr_hz": 50, "gyro_lsb_per_dps": 16.4, "accel_lsb_per_g": 2048, "part": "X"}

@@ -132,7 +132,7 @@ def _said(traceback: str) -> str:
             "the board has too little heap free; let its boot.py take less, leave out parts, or "
             "freeze the packages into its image (docs/boards.md)"
         )
-    if "ENOSPC" in last:
+    if last.startswith(("OSError: 28", "OSError: [Errno 28]")):  # most boards name no ENOSPC
         return "the board's file system is full; delete files on it: mpremote rm :FILE"
     return f"the board says: {last}"
 

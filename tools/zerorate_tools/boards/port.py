@@ -11,6 +11,7 @@ from importlib.resources import files
 from pathlib import Path
 
 from ..ending import noted_signals
+from ..errors import ZerorateError
 from ..recordings import Scales
 from ..recordings.scales import scales_from_text
 from .connection import BoardError, connected
@@ -20,6 +21,10 @@ _TICKS = 1 << 30
 _SILENCE_S = 10.0
 _VERIFIED, _SUSPECT, _SEEN_BEFORE = 1, 3, 0x80
 SAMPLE, SCALES, MESSAGE = 1, 2, 3
+#: On the pins that the board's port calls I2C 0.
+_DEFAULT = """from machine import I2C
+from zerorate_i2c.mpu6050 import MPU6050
+imu = MPU6050(I2C(0, freq=400000), **{!r})"""
 _SYNC = b"\xa5\x5a"
 _HEAD = 4  # the two bytes of _SYNC, kind, length of the payload
 _KIND = 2
@@ -44,15 +49,20 @@ def stream_port(
     seconds: float | None = None,
     setup: str = "",
     done: Callable[[float], object] = lambda seconds: None,
+    **chip,
 ) -> None:
     """Start the streamer on the board at port; hand what it sends to what take(scales) makes.
 
-    setup: MicroPython source that makes `imu`, an MPU6050 (default: I2C(0), the driver's defaults).
+    setup: MicroPython source that makes `imu`, an MPU6050 (default: on I2C(0), with chip, options
+    of MPU6050).
     seconds None streams until a signal that ends programs, or until done returns what is true.
-    Raises BoardError for a board that is silent for 10 s, unplugged, or cannot run the streamer.
+    Raises ZerorateError for setup and chip together, and BoardError for a board that is silent for
+    10 s, unplugged, or cannot run the streamer.
     """
+    if setup and chip:
+        raise ZerorateError("--setup makes the chip; set its address, rate and ranges there")
     with connected(port) as board:
-        board.exec_raw_no_follow(program(setup or _text("default_setup.py")))
+        board.exec_raw_no_follow(program(setup or _DEFAULT.format(chip)))
         stream = BoardStream(board.serial, port)
         taker = take(stream.scales())
         failure = stream.record(taker, seconds, done)

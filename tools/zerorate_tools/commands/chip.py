@@ -25,7 +25,7 @@ def _range(flag: str, of: str, ranges: tuple[int, ...], dest: str) -> Arguments:
     return option(f"{flag} N", help, int, dest=dest, choices=ranges)
 
 
-#: Options of a chip on a Linux bus, which have the driver's own defaults.
+#: Options of a chip, which have the driver's own defaults.
 _CHIP = (
     option("--address N", "I2C address of the chip (0x68)", _address),
     option("--hz N", "samples a second (100)", above_zero, dest="odr_hz"),
@@ -50,7 +50,7 @@ def _chip(arguments: argparse.Namespace) -> dict[str, Any]:
     option("--recover FILE", "finish the .partial.csv of a killed recording", Path),
     option("--seconds S", "stop after this time", above_zero),
     switch("--guide", "say how to turn the device until its scale factors and axes are known"),
-    group("on a Linux bus", *_CHIP),
+    group("the chip, without --setup", *_CHIP),
     group(
         "on a board",
         option("--setup FILE", "a MicroPython file that makes `imu`, for other pins", Path),
