@@ -2,6 +2,7 @@
 
 import importlib.util
 import inspect
+import re
 import sys
 import types
 from math import radians
@@ -119,9 +120,10 @@ def test_the_next_test_has_its_own_chip(smbus):
     assert RealSMBus(1).read_byte_data(0x68, WHO_AM_I) == 0x70
 
 
-def test_a_rate_of_two_axes_is_refused():
-    with pytest.raises(ValueError, match="gyro_dps has 2 values; give three"):
-        Physical(gyro_dps=(1, 2))
+@pytest.mark.parametrize("rate", [(1, 2), 5, 5.0])
+def test_a_rate_of_other_than_three_axes_is_refused(rate):
+    with pytest.raises(ValueError, match=re.escape(f"gyro_dps is {rate}; give three")):
+        Physical(gyro_dps=rate)
 
 
 def test_a_thread_s_transfer_waits_for_the_end_of_another_s(imu_bus, smbus):

@@ -194,7 +194,7 @@ def serving(stands_in, monkeypatch):
 
 
 def test_run_serves_lines_unless_told(serving, capsys):
-    assert cli.main(["run", "/dev/i2c-7"]) == 0
+    assert cli.main(["run", "7"]) == 0
     system, sinks, model = serving.service.call_args.args
     assert sinks == ["Lines"] and model == b"" and not serving.FakeBus.called
     assert system.open_imu() == "imu" and serving.linux.call_args.args == ("/dev/i2c-7",)

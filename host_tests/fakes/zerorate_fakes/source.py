@@ -17,8 +17,8 @@ _ACCEL_NOISE_G = 0.0004
 
 def _three(name, value):
     """The value of three axes, or a function of time."""
-    if not callable(value) and len(value) != 3:
-        raise ValueError(f"{name} has {len(value)} values; give three, one an axis")
+    if not callable(value) and (isinstance(value, (int, float)) or len(value) != 3):
+        raise ValueError(f"{name} is {value}; give three values, one an axis")
     return value
 
 

@@ -20,6 +20,11 @@ def _address(text: str) -> int:
     return address
 
 
+def _bus(text: str) -> str:
+    """The path of a Linux bus, of which `record` takes the number alone, too."""
+    return f"/dev/i2c-{text}" if text.isdecimal() else text
+
+
 def _range(flag: str, of: str, ranges: tuple[int, ...], dest: str) -> Arguments:
     help = f"range of the {of}: {', '.join(map(str, ranges))}"
     return option(f"{flag} N", help, int, dest=dest, choices=ranges)
@@ -178,7 +183,7 @@ _NO_BUS = (errno.ENOTTY, errno.EISDIR, errno.ENOTDIR)
 @command(
     "run",
     "correct continuously on a Linux board, as a service",
-    option("bus BUS", "/dev/i2c-1, or fake: for an emulated chip"),
+    option("bus BUS", "/dev/i2c-1, or fake: for an emulated chip", _bus),
     option(
         "--state FILE",
         "file for what is learned (learned.bin)",
