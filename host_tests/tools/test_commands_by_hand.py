@@ -244,10 +244,14 @@ def test_an_open_bus_is_closed_where_no_chip_answers_and_a_wrong_setting_is_one_
     serving.linux.side_effect = OSError(errno.ENOTTY, "no ioctl")
     with pytest.raises(ZerorateError, match="no I2C bus"):
         open_imu()
-    for number in (errno.ENOENT, errno.EACCES):
+    cli.main(["run", "i2c-7"])
+    elsewhere = serving.service.call_args.args[0].open_imu
+    raised = [(errno.ENOENT, open_imu, OSError), (errno.ENOENT, elsewhere, ZerorateError)]
+    raised += [(number, elsewhere, OSError) for number in (errno.EPERM, errno.EACCES)]
+    for number, opened, error in raised:
         serving.linux.side_effect = OSError(number, "not there yet")
-        with pytest.raises(OSError, match="not there yet"):
-            open_imu()
+        with pytest.raises(error, match="not there yet" if error is OSError else "no I2C bus"):
+            opened()
 
 
 def test_run_needs_the_folder_of_its_state(serving, capsys):

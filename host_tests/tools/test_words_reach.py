@@ -88,6 +88,8 @@ TO_FILES, WATCHED = "simulate.simulate_to_files", "watch.watching.watch"
      "--part P --setup s.py", RECORDER,
      call("0", OUT, seconds=9, done=ANY, address=0x69, odr_hz=50, full_scale_dps=500,
           full_scale_g=4, dlpf_hz=20, part="P", setup="imu = 1")),
+    *((f"record 0 --out o.parquet --address {at}", RECORDER, call("0", OUT, **RECORD, address=at))
+      for at in (0x08, 0x77)),
     (REPLAYED, "recordings.open_recording", call(LOG, keep_gaps=True)),
     (REPLAYED, "replay.replay", call(LOG, OUT, options=SOURCES, **REPLAY)),
     (REPLAYED + " --runtime x86 --state s --from-state f --resume --model m.bin", "replay.replay",
@@ -212,7 +214,7 @@ def test_a_rate_or_a_time_is_not_0_nor_beyond_a_billion(text):
         above_zero(text)
 
 
-@pytest.mark.parametrize("words", ["--seconds abc", "--address 300", "--address 0x7", "--hz 1,5"])
+@pytest.mark.parametrize("words", ["--seconds abc", "--address 0x78", "--address 7", "--hz 1,5"])
 def test_a_number_that_is_none_is_told_without_a_functions_name(words, capsys):
     with pytest.raises(SystemExit):
         cli.main(["record", "0", "--out", "o.csv", *words.split()])
