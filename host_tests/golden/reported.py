@@ -195,9 +195,12 @@ def drawn(logs, folder):
     for number, analysis in enumerate((analysed(kinds[:4]), analysed(kinds[4:], 3), blind)):
         write_model(model_of(analysis, scales), folder)
         result = _plain(report(analysis))
-        with mock.patch.object(report_folder, "_MOST_MOMENTS", 9):
-            plots, notes = report_folder.plots_of(analysis, result, logs, folder)
-        text = page.page(result, plots, page.deployment(folder, ["temp", "a b"]), notes)
+        made = mock.Mock(wraps=page.page)
+        board = page.deployment(folder, ["temp", 'a <b class="c">'])
+        given = {"_MOST_MOMENTS": 9, "page": made, "deployment": mock.Mock(return_value=board)}
+        with mock.patch.multiple(report_folder, **given):
+            report_folder.write_report(analysis, result, logs, folder)
+        text, (_, plots, *_) = (folder / "report.html").read_text("utf-8"), made.call_args.args
         told = re.findall(r'<data value="([^"]+)"', text)
         found[f"{number} page"] = [float(value) for value in told]
         found[f"{number} plots"] = [plot.key for plot in plots] + re.findall('class="(.*?)"', text)

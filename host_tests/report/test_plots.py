@@ -48,6 +48,12 @@ def test_the_label_of_the_time_axis_fits_a_phone(outcome, name, said):
     assert panel.x_narrow == f"minutes since the start of {said}"
 
 
+def test_thinning_looks_at_stretches_of_a_length():
+    x, y = thinned(np.arange(100) + 7, np.arange(100) % 10 % 7, 20)
+    lowest_and_highest = [10 * k + at for k in range(10) for at in (0, 6)]
+    assert x.tolist() == [7 + at for at in lowest_and_highest] and y.tolist() == [0, 6] * 10
+
+
 def test_thinning_keeps_a_gap():
     y = np.ones(5000)
     y[2000:3000] = np.nan
