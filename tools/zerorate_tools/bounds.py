@@ -14,7 +14,7 @@ from typing import TypeVar
 
 from .errors import InFile
 
-_MOST_BYTES = 1 << 20
+_MOST_BYTES = 1_048_576
 STEP_MB = 300
 """What one step of reading may take beyond what the process has."""
 

@@ -20,7 +20,7 @@ from .recordings import open_recording
 from .replay.samples import frames_in_batches
 
 _AXES = "xyz"
-_ROWS = 1 << 17
+_ROWS = 131_072
 _BLIND = "no rest was long enough, so nothing that only rest shows was looked for"
 
 

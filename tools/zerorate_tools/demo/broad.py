@@ -238,7 +238,7 @@ def _downloaded(url: str, output_file: str, pooch: object) -> None:
     answer = requests.get(url, timeout=_SILENT_S, stream=True)  # type: ignore[no-untyped-call]
     with answer, open(output_file, "wb") as out:
         answer.raise_for_status()
-        for chunk in answer.iter_content(1 << 16):
+        for chunk in answer.iter_content(65_536):
             out.write(chunk)
             if time.monotonic() > until:
                 raise TimeoutError

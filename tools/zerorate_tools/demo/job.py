@@ -104,7 +104,7 @@ def _play(recording: Recording, interpreter: Runtime, given: dict[str, Path | No
                 **{name: path for name, path in given.items() if path is not None},
             },
             files_out=["out.bin", "state.bin"],
-            heap=8 << 20,
+            heap=8_388_608,
             check=True,
         )
 

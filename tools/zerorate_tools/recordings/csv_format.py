@@ -23,8 +23,8 @@ from .scales import Scales, example_for, scales_from_text
 from .text import head, line_blocks, rows_of
 
 SUFFIXES = (".csv", ".csv.gz")
-_HEADER_BYTES = 1 << 16
-_BLOCK_BYTES = 1 << 20
+_HEADER_BYTES = 65_536
+_BLOCK_BYTES = 1_048_576
 _ENDING = re.compile(r"(\.partial(-[0-9]+)?)?(\.csv|\.csv\.gz|\.parquet)$")
 _UNFINISHED = re.compile(r"\.partial(-[0-9]+)?\.csv$")
 

@@ -25,7 +25,7 @@ from .recording import Columns
 from .scales import Scales, check_whole
 from .writing import check_output, recording_writer
 
-_BLOCK = 1 << 16
+_BLOCK = 65_536
 
 
 @contextmanager

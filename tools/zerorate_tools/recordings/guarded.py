@@ -19,7 +19,7 @@ from ..errors import BadRecording
 from .parquet_format import batches, open_file
 
 _RUN = "from zerorate_tools.recordings.guarded import main; main()"
-_ROWS = 1 << 16
+_ROWS = 65_536
 
 
 def read_in_safety(path: Path) -> None:
@@ -28,7 +28,7 @@ def read_in_safety(path: Path) -> None:
     _read(path, str(path.absolute()), about.st_ino, about.st_size, about.st_mtime_ns)
 
 
-@lru_cache(1 << 14)
+@lru_cache(16_384)
 def _read(path: Path, absolute: str, inode: int, size: int, change_ns: int) -> None:
     problem, do = _readers.setdefault(os.getpid(), _Reader()).answer(absolute)
     if problem:

@@ -17,7 +17,7 @@ from .scales import Scales, scales_from_text
 SUFFIXES = (".parquet",)
 _KEY = b"zerorate"
 # columns stream through this much each, so that one huge row group costs no more than many small
-_BUFFER_BYTES = 1 << 16
+_BUFFER_BYTES = 65_536
 
 
 def open_file(path: Path) -> pq.ParquetFile:

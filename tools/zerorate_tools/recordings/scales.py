@@ -28,7 +28,7 @@ _RANGES = {
     "temp_lsb_per_degc": (1e-3, 1e7),
     "temp_offset_degc": (-1e6, 1e6),
 }
-MOST_BYTES = 1 << 20
+MOST_BYTES = 1_048_576
 
 
 @dataclass(frozen=True)

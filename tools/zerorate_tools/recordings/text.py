@@ -10,7 +10,7 @@ import pyarrow.csv
 
 from ..errors import BadRecording
 
-_BLOCK_BYTES = 1 << 20
+_BLOCK_BYTES = 1_048_576
 _NO_VALUE = ["", "nan", "NaN", "NA", "null", "None"]
 _PACKED = {
     b"\x1f\x8b": "gzip",

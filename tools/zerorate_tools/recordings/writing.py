@@ -17,7 +17,7 @@ from .parquet_format import ParquetWriter
 from .recording import Recording
 from .scales import Scales, check_whole
 
-_ROWS = 1 << 16
+_ROWS = 65_536
 
 
 def write_recording(recording: Recording, path: str | PathLike[str]) -> None:

@@ -20,7 +20,7 @@ from ..recordings.recording import Columns
 from .live import Live
 from .screen import Screen, Shown, WatchOptions, screen
 
-_MOST_BYTES = 1 << 20
+_MOST_BYTES = 1_048_576
 #: What is read only when it is finished -> why.
 _WHOLE_ALONE = {
     ".parquet": "a Parquet file has its index at its end, so it cannot be read while it grows",

@@ -19,7 +19,7 @@ from ..samples.spool import PLACE
 from ..tables.table import Chunk, Table
 from . import arrays, columnar, flight_logs, json_file, mcap_file, ros_bag
 
-_WORDS_BYTES = 1 << 16
+_WORDS_BYTES = 65_536
 _ABOUT, _READ = b"about", b"read"
 _TOLD = ("names", "mapping", "sensor", "lsb", "notes", "words")
 #: Reader -> its function, and what it reads.

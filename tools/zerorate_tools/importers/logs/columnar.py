@@ -14,7 +14,7 @@ from ..tables.sniffing import MOST_WORDS
 from ..tables.table import Chunk, Table
 
 #: Cells of a batch: 32 MB of numbers.
-_CELLS, _ROWS = 1 << 22, 1 << 16
+_CELLS, _ROWS = 4_194_304, 65_536
 
 
 def read(path: Path, instance: int = 0) -> Table:

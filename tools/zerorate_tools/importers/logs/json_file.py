@@ -21,14 +21,14 @@ from ..tables.sniffing import DATE, MOST_WORDS
 from ..tables.table import Chunk, Table
 from .arrays import table_of_arrays
 
-_ROWS, _SEEN = 1 << 13, 3000
+_ROWS, _SEEN = 8_192, 3000
 _LONGEST_LIST = 9
 _DO = "write an object for each sample, one a line"
 
 
 def read(path: Path, instance: int = 0) -> Table:
     """Raises BadRecording."""
-    if _is_sample(head(path, 1 << 18)[0].partition(b"\n")[0]):
+    if _is_sample(head(path, 262_144)[0].partition(b"\n")[0]):
         return _of_records(lambda dropped: _lines(path, dropped), path)
     stream = open_text(path, head(path, 4096)[1])[0]
     held = json.loads(stream.read())

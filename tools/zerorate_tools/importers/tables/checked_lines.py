@@ -11,7 +11,7 @@ import numpy as np
 from ...recordings.text import head, line_blocks
 from .table import Chunk, Table
 
-_BLOCK_BYTES = 1 << 20
+_BLOCK_BYTES = 1_048_576
 _LONGEST_LINE = 4096
 #: What stands where in lines of VectorNav's, by its manual.
 _KNOWN = {

@@ -18,7 +18,7 @@ from ..report import cut_words
 from .sniffing import COMMENTS, DAY, Form, sniffed, without_arrows, without_labels
 from .table import Chunk, Table
 
-_BLOCK_BYTES = 1 << 22
+_BLOCK_BYTES = 4_194_304
 _HALF_DAY_S = 43_200.0
 _A_NAME = re.compile(r"[^\W\d]")
 #: Where a program fills a file before it writes, zeros stand behind the last line.

@@ -10,7 +10,7 @@ from ...errors import BadRecording
 from ...recordings.text import head
 from ..columns.units import without_unit
 
-_HEAD_BYTES = 1 << 18
+_HEAD_BYTES = 262_144
 #: What some programs write before the first line of UTF-8.
 MARK = b"\xef\xbb\xbf"
 #: Blackbox Explorer writes some 150 lines of settings above its table.

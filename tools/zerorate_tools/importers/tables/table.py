@@ -8,7 +8,7 @@ from itertools import islice
 
 import numpy as np
 
-_ROWS = 1 << 15
+_ROWS = 32_768
 
 
 @dataclass

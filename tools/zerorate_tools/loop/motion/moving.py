@@ -28,7 +28,7 @@ _GAP = 5
 #: Share of the samples that an attitude must be seen at: below it gravity shows more.
 _LEAST_SEEN = 0.5
 #: Seconds over which gravity is held in one place by about the right bias, and samples asked.
-_HELD_S, _SOME = 3.0, 1 << 16
+_HELD_S, _SOME = 3.0, 65_536
 #: Rests this long are a reading of the bias, with what it wanders meanwhile.
 _REST_TICKS, REST_SIGMA = 10, np.radians(0.005)
 
@@ -193,7 +193,7 @@ def _rests(ticks: Ticks, still: np.ndarray) -> np.ndarray:
 def _samples(opened, lsb_per_g, reference):
     """Times in us, rates and accelerations in LSB, and what the reference gives."""
     rows = []
-    for batch in filter(lambda b: len(b[TIME]), opened.batches(rows=1 << 18)):
+    for batch in filter(lambda b: len(b[TIME]), opened.batches(rows=262_144)):
         t_us, gyro = batch[TIME], np.column_stack([batch[n] for n in GYRO])
         accel = np.column_stack([batch[n] for n in ACCEL]) if lsb_per_g else np.zeros_like(gyro)
         given = np.zeros((len(t_us), 0))

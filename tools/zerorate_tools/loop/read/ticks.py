@@ -103,7 +103,7 @@ def read_ticks(path: AnyPath, tick_s: float = TICK_S) -> Ticks:
     opened = open_recording(path, keep_gaps=True)
     tick_s = max(tick_s, _of_one_sample(opened))
     reader = _Reader(opened.scales, opened.column_names, tick_s)
-    for batch in opened.batches(rows=1 << 18):
+    for batch in opened.batches(rows=262_144):
         reader.add(batch)
     return reader.result(opened.name, Path(path))
 

@@ -14,7 +14,7 @@ from .firmware import Firmware, rows
 
 #: Blocks after the first still minute in which the firmware may go on making up its mind.
 _MORE_BLOCKS = 15
-_ROWS = 1 << 17
+_ROWS = 131_072
 
 
 @dataclass(frozen=True)
