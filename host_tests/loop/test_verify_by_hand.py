@@ -556,7 +556,7 @@ def test_confidence_is_tentative_with_few_power_ons_beside_earth_and_for_time_wi
     sure = replace(analysis, judgement=judgement([1, 1, 1], [0.5] * 3, [9.0]))
     assert sure.confidence(0) == "confirmed" and not sure.few and not sure.single
     few = replace(sure, train=warm[:2])
-    assert few.few and few.confidence(0) == "tentative"
+    assert few.few and few.confidence(0) == "tentative" and not replace(sure, train=warm * 2).few
     beside = replace(effect(VOLTS), rivals={"earth-rotation": 0.0})
     beside_earth = replace(sure, selection=replace(sure.selection, found=[beside]))
     assert beside_earth.confidence(0) == "tentative"
