@@ -133,13 +133,16 @@ def test_a_csv_without_scales_says_what_to_write(csv_of):
     assert read_recording(path).scales.temp_offset_degc == 36.53
 
 
-@pytest.mark.parametrize("name", ["run.csv.gz", "run.parquet"])
-def test_a_truncated_file_is_refused(tmp_path, name):
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [("run.csv.gz", "the gzip data is cut off"), ("run.parquet", "no Parquet file, or cut off")],
+)
+def test_a_truncated_file_is_refused(tmp_path, name, said):
     write_recording(a_recording(5000), tmp_path / name)
     whole = (tmp_path / name).read_bytes()
     for length in (0, 100, len(whole) // 2, len(whole) - 9):
         (tmp_path / name).write_bytes(whole[:length])
-        with pytest.raises(BadRecording, match="cut off" if length else "empty file"):
+        with pytest.raises(BadRecording, match=said if length else "empty file"):
             read_recording(tmp_path / name)
 
 

@@ -76,9 +76,8 @@ def drop_all() -> None:
 def clear_left_over(folder: Path) -> None:
     """Finish the switch, and remove the drafts, that killed runs left in a folder."""
     settle(folder)
-    for draft in folder.glob(f"{_PREFIX}*.partial"):
-        if not _MARK.fullmatch(draft.name) or draft in _mine or not _is_folder(draft):
-            continue
+    others = [d for d in folder.glob(f"{_PREFIX}*.partial") if d not in _mine and _is_folder(d)]
+    for draft in filter(lambda one: _MARK.fullmatch(one.name), others):
         with suppress(OSError), _left_over(draft) as is_left_over:
             if is_left_over and _is_of_no_switch(draft):
                 shutil.rmtree(draft, ignore_errors=True)
