@@ -84,6 +84,8 @@ def place(array, name, settings):
     block = getattr(layout, BLOCKS[word])
     at, unit = place(block, inside, settings)
     size = block.size or settings[layout.SETTINGS.ESTIMATOR_WORDS]
+    if block is layout.SLOT:
+        assert layout.slot_at(int(number)) == first + int(number) * size
     return first + int(number) * size + at, unit
 
 
