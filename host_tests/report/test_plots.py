@@ -13,7 +13,7 @@ from zerorate_tools.loop.search.curve import FORMS, KIND
 from zerorate_tools.model.effects import EFFECTS
 from zerorate_tools.recordings import open_recording
 from zerorate_tools.replay import replay
-from zerorate_tools.report import sentences
+from zerorate_tools.report import effect_plots, sentences
 from zerorate_tools.report.estimators import moments
 from zerorate_tools.report.plot import thinned
 from zerorate_tools.report.report_folder import plots_of
@@ -52,6 +52,16 @@ def test_thinning_looks_at_stretches_of_a_length():
     x, y = thinned(np.arange(100) + 7, np.arange(100) % 10 % 7, 20)
     lowest_and_highest = [10 * k + at for k in range(10) for at in (0, 6)]
     assert x.tolist() == [7 + at for at in lowest_and_highest] and y.tolist() == [0, 6] * 10
+
+
+@pytest.mark.parametrize(("count", "step"), [(1199, 1), (1200, 2), (3000, 5)])
+def test_of_many_points_beside_a_curve_some_hundreds_are_drawn(monkeypatch, count, step):
+    every = np.arange(count) + 0.5, -np.arange(count), np.ones(count, int)
+    monkeypatch.setattr(effect_plots, "_points", lambda *of: every)
+    monkeypatch.setattr(effect_plots, "_curve", lambda *of: every[:2])
+    warms, *_ = effect_plots._series([], [(None, np.zeros((1, 3)))], ())
+    assert warms.x.tolist() == every[0][::step].tolist()
+    assert warms.y.tolist() == every[1][::step].tolist()
 
 
 def test_thinning_keeps_a_gap():

@@ -90,7 +90,7 @@ def _moment(
         minute=minute,
         recording=name,
         temp_degc=float(scales.temp_degc(raw_temp)) if warm else None,
-        bias_dps=state[STATE.OUT_Q8 : STATE.OUT_Q8 + 3] / 256 / lsb,
+        bias_dps=state[STATE.OUT_Q8 :][:3] / 256 / lsb,
         axes=tuple(
             tuple(_estimators(state, corrector.settings, axis, scales)) for axis in range(3)
         ),
@@ -171,7 +171,7 @@ def inside(seen: list[Moment]) -> Plot | None:
     if not seen:
         return None
     drawn = [_at(m) for m in seen]
-    warm = any(s.panel == 1 for s in drawn[-1])
+    warm = any(m.temp_degc is not None for m in seen)
     panels = [Panel("readings in each bin", "rate, dps", "readings")]
     if warm:
         panels.append(Panel("bias by estimator, dps", "°C", "dps"))

@@ -59,7 +59,7 @@ def motion_page(result: Mapping[str, Any], folder: Path) -> str:
     axes = [of for r in readings for of in ((r.right, r.right_ci), (r.up, r.up_ci))]
     turns = [(r.turn - _TURN_DEG, r.turn_ci) for r in readings]
     widest = _widest(axes, np.degrees(seen))
-    ring = max(r for r in _RINGS_DEG if r <= max(widest, _RINGS_DEG[0]))
+    ring = max(r for r in _RINGS_DEG if r <= widest)
     return rendered(
         "motion.html.j2",
         [],

@@ -23,8 +23,8 @@ TRENDS = ((1, "heating", "triangle-up"), (-1, "cooling", "triangle-down"), (0, "
 _ROWS = ("all axes", "x axis", "y axis", "z axis")
 _APART = 0.14
 _MDPS = 1e3
-#: Blocks on either side from which a temperature's trend is taken.
-_TREND_BLOCKS = 2
+#: Blocks on either side from which a temperature's trend is taken, and from one to the other.
+_BESIDE, _ACROSS = 2, 4
 _HELD_DEGC_PER_MIN = 0.06
 
 
@@ -255,9 +255,8 @@ def temperature(session: Session) -> Numbers | None:
 def trend(session: Session) -> Numbers:
     """(n,) int: 1 where the temperature rises, -1 where it falls, 0 where it is held."""
     temp = temperature(session)
-    if temp is None or len(temp) < 2 * _TREND_BLOCKS + 1:
+    if temp is None:
         return np.zeros(session.blocks, int)
-    padded = np.pad(temp, _TREND_BLOCKS, mode="edge")
-    rise = padded[2 * _TREND_BLOCKS :] - padded[: -2 * _TREND_BLOCKS]
-    per_min = rise / (2 * _TREND_BLOCKS * session.block_s / 60)
+    padded = np.pad(temp, _BESIDE, mode="edge")
+    per_min = (padded[_ACROSS:] - padded[:-_ACROSS]) / (_ACROSS * session.block_s / 60)
     return np.where(np.abs(per_min) < _HELD_DEGC_PER_MIN, 0, np.sign(per_min)).astype(int)
