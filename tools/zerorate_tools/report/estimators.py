@@ -55,9 +55,7 @@ class Moment:
     axes: tuple[tuple[Estimator, ...], ...]
 
 
-def moments(
-    logs: Sequence[AnyPath], model: AnyPath | None = None, every_s: float = 60.0
-) -> list[Moment]:
+def moments(logs: Sequence[AnyPath], model: AnyPath | None, every_s: float) -> list[Moment]:
     """Replay recordings one after another, each a power-on, looking at the state every `every_s`.
 
     model: the effect model to run with. Raises ZerorateError.
