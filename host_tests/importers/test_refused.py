@@ -19,6 +19,7 @@ SCALED = Options(hz=100, gyro_lsb_per_dps=131)
 NOISE = np.random.default_rng(4).normal(size=(50, 6)) * [0.01, 0.02, 0.01, 0.1, 0.1, 0.1]
 UNNAMED_DATES = "\n".join(f"2026-05-01   10:00:{i // 5:02d} 0.8  0.8   0.9" for i in range(50))
 WITH_A_RATE = "// Sample rate: 50.0Hz\nGyr_X;Gyr_Y;Gyr_Z\n" + "0.1;0.2;0.3\n" * 20
+TENS = np.arange(0, 5000, 10)
 LISTS = pd.DataFrame({"t_s": np.arange(300) / 100, "pulse": 70, "gyro": "[0.8, -0.5, 0.3]"})
 
 
@@ -61,6 +62,13 @@ LISTS = pd.DataFrame({"t_s": np.arange(300) / 100, "pulse": 70, "gyro": "[0.8, -
         (WITH_A_RATE, {"units": {"gyro": "dps"}}, "time stamps; give --hz 50 [(]as the file says"),
         (LISTS, {}, "COLUMN one of t_s, pulse; gyro: no number alone"),
         (rates(["n", *HEAD.split(",")[1:]]).assign(n=range(2000)), {}, "no time stamps; give --hz"),
+        (table(500).assign(t_s=10).rename(columns={"t_s": "dt"}), {}, "--hz 100 .as column 'dt'"),
+        (table(500).assign(t_s=TENS, ticks=TENS).rename(columns={"t_s": "n"}), {},
+         "give --hz, samples a second, or --map t_us=ticks:ms if it is a time"),
+        (table(500).assign(t_s=range(500)).rename(columns={"t_s": "time"}), {},
+         "--time-unit s .*; or --hz, rows a second, if it counts them"),
+        ("t_s,gx_dps,gy_dps,gz_dps,ax,ay,az\n0,1,1,1,2.5,2.5,0", {}, "--accel-unit g [^-]*$"),
+        (table(500).assign(az_g=0.1), {}, "map other columns, or leave it out by --map ax=none"),
         (table(500).rename(columns={"t_s": "min.timestamp"}), {}, r"--time-unit s \(100 Hz\)"),
         (table(500).rename(columns={"t_s": "time"}).assign(time="May 1st, at noon"), {},
          "no time can be read from column 'time'; .*--hz N"),

@@ -1,5 +1,6 @@
 """Tables as people have them come out as integers in LSB, and every loss is told."""
 
+import re
 from functools import reduce
 from operator import xor
 
@@ -256,6 +257,7 @@ def test_a_rate_overrides_a_time_column_and_says_so(tmp_path):
         *("imu.gyro.{}", "w{}", "gyr_{}", "AngVel{}", "Gyroscope_{}", "{}gyro", "Gy{}", "g{}_mean"),
         *("w_RS_S_{} [rad s^-1]", "raw_angular_rate_{}_rad_per_s", "{} (rad/sec)", "g{}_rad_s"),
         *("{}-axis (rad/s)", "imu rate {} [radians per second]", "UncompGyro{}", "{}_rate"),
+        *("g{}1", "gyro_{}_2", "gyroscope_lsm6ds3_c.{}"),
     ],
 )
 def test_usual_names_and_units_of_rates_are_known(tmp_path, name):
@@ -292,6 +294,20 @@ def test_columns_that_are_not_taken_are_offered(tmp_path):
     assert {"temp", "vdd_mv"} <= {*recording.columns} and not told(report, "left aside")
     _, report = read(tmp_path, table(500), mapping="temp=none")
     assert told(report, "no temperature: the bias")
+
+
+def test_of_several_temperatures_the_gyroscopes_own_is_taken(tmp_path):
+    others = {"Processor (degC)": 52.9, "Board (degC)": 31.4, "Gyroscope and more (degC)": 37.1}
+    recording, _ = read(tmp_path, table(500).drop(columns="temp_c").assign(**others))
+    assert recording.temp_degc().mean() == pytest.approx(37.1, abs=0.1)
+
+
+def test_of_two_numbered_sensors_those_of_one_number_go_together(tmp_path):
+    frame = table(500).rename(columns=lambda name: re.sub("^([ga].)_.*", r"\g<1>1", name))
+    second = {f"{kind}{axis}2": frame[f"{kind}{axis}1"] for kind in "ga" for axis in "xyz"}
+    frame = frame.assign(**second | {"ax2": frame["az1"], "az2": frame["ax1"]})
+    recording, _ = read(tmp_path, frame, mapping="gx=gx2:dps gy=gy2:dps gz=gz2:dps")
+    assert recording.accel_g().mean(axis=0) == pytest.approx([1, 0, 0], abs=0.01)
 
 
 def test_the_acceleration_of_the_same_recording_in_a_file_beside_is_said(tmp_path):

@@ -101,6 +101,16 @@ def test_files_of_sensors_without_rates_are_refused(tmp_path, sensors):
         import_recording([sensors[0], same], tmp_path / "o.csv")
 
 
+def test_tables_without_names_or_times_say_what_they_lack(tmp_path, sensors):
+    for sensor in sensors:
+        sensor.write_text(sensor.read_text().partition("\n")[2])
+    with pytest.raises(BadRecording, match="gyro.csv: its columns have no names; write a line"):
+        import_recording(sensors, tmp_path / "o.csv")
+    sensors[0].write_text("n,gx_dps,gy_dps,gz_dps\n" + sensors[0].read_text())
+    with pytest.raises(BadRecording, match="no time stamps; give --map t_us=n:s"):
+        import_recording(tmp_path, tmp_path / "o.csv")
+
+
 def test_whole_recordings_are_not_put_into_one(tmp_path):
     sources = [table(tmp_path / "a.csv", 100.0), table(tmp_path / "b.csv", 400.0)]
     with pytest.raises(BadRecording, match=r"several recordings \(a, b\).*--out FOLDER"):

@@ -214,7 +214,7 @@ def only_grows(values: np.ndarray) -> bool:
 
 
 def likely_time(values: np.ndarray) -> str:
-    step = float(np.median(np.diff(values)))
+    step = float(np.median(np.diff(values))) if len(values) > 1 else 0.0
     by_date = _by_calendar(values)[0]
     return by_date or next((u for u, s in TIME_S.items() if 1e-4 <= step * s <= 0.1), "s")
 
@@ -330,4 +330,6 @@ def _usual_step(values: np.ndarray) -> float:
 def _time_words(values: np.ndarray) -> str:
     likely = likely_units_of_time(_usual_step(values))
     would = " or ".join(f"{unit} ({hz:.4g} Hz)" for unit, hz in likely.items())
-    return f"--time-unit {would or 'with one of ' + ', '.join(TIME_S)}"
+    counts = len(values) > 1 and (np.diff(values) == 1).all()
+    rows = "; or --hz, rows a second, if it counts them" if counts else ""
+    return f"--time-unit {would or 'with one of ' + ', '.join(TIME_S)}{rows}"

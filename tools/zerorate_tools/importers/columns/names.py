@@ -8,16 +8,20 @@ from .units import RAW, unit_in_name, without_unit
 _AXIS = "([xyz])"
 #: After the axis: calibrated, or a mean of many readings.
 _MADE = "(?:cal|mean|avg)?"
+#: A sensor's number, or its part: gx1, accelerometer_lsm6ds3.x.
+_NUMBER = r"\d?"
+_CHIP = r"(?:(?:bm[agi]|i[ai]m|icm|lis|lsm|mpu)\d[a-z0-9]*?)?"
 _GYRO = re.compile(
     r"(?:.*(?:gyroscope|gyrorotation|gyro|gyr|angularvelocity|ang(?:ular)?rate|angvel|rotationrate|omega)"
-    r"\d?(?:uncalibrated|uncal|calibrated|corrected|unfilt|adc|raw|rad|data|rate|dps|values?|static|noise)"
-    r"{0,2}"
-    r"|(?:.*imu)?(?:gy|[wg]|pqr))" + f"{_AXIS}{_MADE}$|^{_AXIS}(?:gyroscope|gyro|gyr)$"
+    rf"\d?{_CHIP}(?:uncalibrated|uncal|calibrated|corrected|unfilt|adc|raw|rad|data|rate|dps|values?"
+    r"|static|noise){0,2}"
+    r"|(?:.*imu)?(?:gy|[wg]|pqr))" + f"{_AXIS}{_MADE}{_NUMBER}$|^{_AXIS}(?:gyroscope|gyro|gyr)$"
 )
 _ACCEL = re.compile(
     r"(?:.*(?:accelerometer|acceleration|accel|acc|specificforce)"
-    r"\d?(?:uncalibrated|uncal|calibrated|smooth|adc|raw|data|ms2|m?g|values?|ln|wr|static|noise){0,2}"
-    r"|(?:.*imu)?(?:ac?|gf))" + f"{_AXIS}{_MADE}$|^{_AXIS}(?:accelerometer|accel|acc)$"
+    rf"\d?{_CHIP}(?:uncalibrated|uncal|calibrated|smooth|adc|raw|data|ms2|m?g|values?|ln|wr|static"
+    r"|noise){0,2}"
+    r"|(?:.*imu)?(?:ac?|gf))" + f"{_AXIS}{_MADE}{_NUMBER}$|^{_AXIS}(?:accelerometer|accel|acc)$"
 )
 #: Less gravity, or gravity as a filter has it: no measure of it.
 _FREE = re.compile(r".*(?:freeacc|useracc|linacc|gravity)|lacc")
@@ -27,13 +31,17 @@ _SPREAD = re.compile(r".*(?:covariance|variance|stddev|sigma|bias(?:dps|rads)?[x
 _RAW = re.compile(r".*(?:raw|uncal|uncomp|unfilt)")
 _CORRECTED = re.compile(r".*(?:corrected|compensated|calibrated|unbiased|filtered|motionrotation)")
 _TEMP = re.compile(r".*(?:temperature|temp|tmp)c?(?:mean|avg)?$")
-_NOT_THE_DIE = re.compile(r"ambient|air|baro|bmp|bme|aht|sht|cpu|motor|batt|esc|water|room")
+_NOT_THE_DIE = re.compile(
+    r"ambient|air|baro|bmp|bme|aht|sht|cpu|processor|environment|motor|batt|esc|water|room"
+)
+_THE_DIE = re.compile("gyr|imu")
 _TIME = re.compile(
-    r"(?:t|ts|time|timestamp|timestampsample|now|stamp|timeus|timems|secondselapsed|datetime|"
+    r"(?:t|ts|times?|timestamps?|timestampsample|now|stamp|timeus|timems|secondselapsed|datetime|"
     r"date|utc|milli(?:s|seconds)|micro(?:s|seconds)|loggingtime|.*timestamp(?:unix|sincereboot)?(?:cal)?|.*headerstamp|sampletime|"
     r"gpst|gpstime|tow|timeofweek|elapsed|elapsedtime|epoch?|.*offsettime|timestartup|timesincestart(?:in)?|rtctime|"
     r"(?:sys|gyro|imu)ts)$"
 )
+_STEP = re.compile("(?:d|delta)t(?:ime)?|timestep|(?:sampl(?:e|ing))?(?:interval|period)")
 _SEC = re.compile(r"(.*?)(?:secs?|seconds?)$")
 _NANOSEC = re.compile(r"(.*?)(?:nanosecs?|nsecs?|nanoseconds?)$")
 #: A column of a variable of a .mat.
@@ -85,7 +93,9 @@ def most_alike(groups: list[dict[str, str]], gyro: dict[str, str], instance: int
         two = groups[number]["ax"], gyro.get("gx", "")
         ours, theirs = (set(re.split(r"[^a-z0-9]+", without_unit(name.lower()))) for name in two)
         begun = len(os.path.commonprefix(two))
-        return len(ours & theirs) / len(ours | theirs), begun, number == instance, -number
+        numbers = [re.findall(r"\d", name) for name in two]
+        same = numbers[0] == numbers[1] if any(numbers) else number == instance
+        return len(ours & theirs) / len(ours | theirs), begun, same, -number
 
     return groups[max(range(len(groups)), key=alike)]
 
@@ -113,7 +123,8 @@ def temperature(names: list[str]) -> str | None:
     """The column that looks like the sensor's own temperature."""
     found = [name for name in names if _TEMP.match(spelled(name))]
     found += [name for name in names if unit_in_name("temp", name) == "degc"]
-    return next((name for name in found if not _NOT_THE_DIE.search(spelled(name))), None)
+    found = [name for name in found if not _NOT_THE_DIE.search(spelled(name))]
+    return min(found, key=lambda name: not _THE_DIE.search(spelled(name)), default=None)
 
 
 def other_temperatures(names: list[str]) -> list[str]:
@@ -129,6 +140,16 @@ def other_temperatures(names: list[str]) -> list[str]:
 def time_columns(names: list[str]) -> list[str]:
     """The columns that look like time stamps."""
     return [name for name in names if _TIME.match(spelled(name))]
+
+
+def is_step(name: str) -> bool:
+    """Whether a column is called as the time since the row before."""
+    return bool(_STEP.fullmatch(spelled(name)))
+
+
+def is_clock(name: str) -> bool:
+    """Whether a column is called as a count of something's ticks."""
+    return bool(re.search("tick|clock|clk|cycle", spelled(name)))
 
 
 def in_units_of_time(names: list[str]) -> list[str]:

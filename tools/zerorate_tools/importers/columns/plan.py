@@ -85,6 +85,7 @@ def planned(
     named = [t for t, mapped in given.items() if mapped.unit and t in COLUMNS]
     plan.typed = frozenset([*(units or {}), *map(kind_of, named)])
     raw, unknown = set(), {}
+    asked: dict[str, str] = {}
     first = table.first_rows(plan.columns)
     ask = (plan, table, units or {}, first, path)
     time_unit = _unit(TIME, *ask, None) if TIME in wanted else None
@@ -100,7 +101,8 @@ def planned(
             do = "write seconds, or dates as 2026-05-01T12:00:00.250; or count the rows: --hz N"
             raise BadRecording(path, f"no time can be read from column {mapped.column!r}", do=do)
         if unit is None:
-            unknown[mapped.column] = ready_words(target, wanted, first)
+            words = ready_words(target, wanted, first)
+            unknown[mapped.column] = asked.setdefault(kind_of(target), words)
         if unit == RAW:
             raw.add(kind_of(target))
         plan.factors[target] = factors_of(target).get(unit or "", (1.0, 0.0))
@@ -275,15 +277,24 @@ def divided_by(plan: Plan, kind: str, lsb: float) -> None:
 
 def hz_words(table: Table) -> str:
     """What to type where nothing is called a time: a column that goes on as one does, or a rate."""
+    if table.said_hz:
+        return f"--hz {table.said_hz:g} (as the file says)"
     others = [name for name in table.names if name != usual.temperature(table.names)]
     first = {} if usual.unnamed(others) else table.first_rows(others)
+    maybe = ""
     for name, values in first.items():
+        if usual.is_step(name) and np.isfinite(values).any() and np.nanmedian(values) > 0:
+            step = float(np.nanmedian(values))
+            unit = unit_in_name(TIME, name) or likely_time(np.array([0.0, step]))
+            return f"--hz {1 / (step * TIME_S[unit]):.4g} (as column {name!r} says in {unit})"
         steps = np.diff(values)
-        # whole numbers may count anything
-        if not table.said_hz and only_grows(values) and steps.min() > 0 and (steps % 1).any():
-            return f"--map {shlex.quote(f't_us={name}:{likely_time(values)}')}"
-    said = f" {table.said_hz:g} (as the file says)" if table.said_hz else ""
-    return f"--hz{said or ', samples a second'}"
+        if only_grows(values) and steps.min() > 0:
+            words = f"--map {shlex.quote(f't_us={name}:{likely_time(values)}')}"
+            if (steps % 1).any():
+                return words
+            # whole numbers may count anything
+            maybe = maybe or (f", or {words} if it is a time" if usual.is_clock(name) else "")
+    return f"--hz, samples a second{maybe}"
 
 
 def left_aside(plan: Plan, table: Table) -> list[str]:

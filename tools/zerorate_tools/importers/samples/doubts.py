@@ -93,8 +93,8 @@ def _refuse_gravity(seen: dict[str, np.ndarray], plan: Plan, scales: Scales, pat
     if _LEAST_G <= usual and (usual <= _MOST_G or not steady):
         return
     problem = f"the usual acceleration is {usual:.3g} g, and gravity alone is 1 g"
-    do = _meant(usual, plan, lsb)
-    raise BadRecording(path, problem, do=f"{do}leave it out by --map ax=none")
+    do = f"{_meant(usual, plan, lsb)}map other columns, or leave it out by"
+    raise BadRecording(path, problem, do=f"{do} --map ax=none")
 
 
 def _meant(usual_g: float, plan: Plan, lsb: float) -> str:

@@ -67,14 +67,17 @@ def folder_of_tables(
     tables = {file.stem: table for file, table in found if _is_of_sensors(table, file)}
     path = said or path
     if not tables:
-        unnamed = [one for one in found if usual.unnamed(one[1].names) and _may_hold_rates(one[1])]
-        if len(unnamed) == 1:
-            (file, table), *_ = unnamed
+        rates = [one for one in found if usual.gyro_groups(one[1].names)]
+        rates += [one for one in found if usual.unnamed(one[1].names) and _may_hold_rates(one[1])]
+        if len(rates) == 1:
+            (file, table), *_ = rates
             table.notes.append(f"of the table {file.name} alone")
             return table
-        held = f" in {', '.join(file.name for file, _ in found[:_TOLD])}" if found else ""
-        do = f"name a file{held}, or the folder of a ROS 2 bag or of a phone's tables"
-        raise BadRecording(path, "no table with rates in it", do=do)
+        held = ", ".join(file.name for file, _ in (rates or found)[:_TOLD])
+        problem = "several tables that may hold rates" if rates else "no table with rates in it"
+        one_of = f" in {held}" if held else ""
+        do = f"name a file{one_of}, or the folder of a ROS 2 bag or of a phone's tables"
+        raise BadRecording(path, problem, do=do)
     return _by_shared_time(tables, path)
 
 
@@ -86,6 +89,10 @@ def tables_of_sensors(files: Sequence[Path], opened: Callable[[Path], Table]) ->
             raise BadRecording(file, "two files of that name", do="give one of them another name")
         tables[file.stem] = opened(file)
     if not any(usual.gyro_groups(t.names) or _is_of_rates(s, t) for s, t in tables.items()):
+        bare = next((f for f in files if usual.unnamed(tables[f.stem].names)), None)
+        if bare:
+            do = "write a line of names above each table, as time_s,x,y,z"
+            raise BadRecording(bare, "its columns have no names", do=do)
         do = "name the file with the rates, too; or a folder after --out: each is a recording then"
         raise BadRecording(files[0], "no table with rates in it, nor in the others", do=do)
     return _by_shared_time(tables, files[0])
