@@ -257,7 +257,7 @@ def test_a_rate_overrides_a_time_column_and_says_so(tmp_path):
         *("imu.gyro.{}", "w{}", "gyr_{}", "AngVel{}", "Gyroscope_{}", "{}gyro", "Gy{}", "g{}_mean"),
         *("w_RS_S_{} [rad s^-1]", "raw_angular_rate_{}_rad_per_s", "{} (rad/sec)", "g{}_rad_s"),
         *("{}-axis (rad/s)", "imu rate {} [radians per second]", "UncompGyro{}", "{}_rate"),
-        *("g{}1", "gyro_{}_2", "gyroscope_lsm6ds3_c.{}"),
+        *("g{}1", "gyro_{}_2", "gyroscope_lsm6ds3_c.{}", "gyro {} (in radians/s)"),
     ],
 )
 def test_usual_names_and_units_of_rates_are_known(tmp_path, name):

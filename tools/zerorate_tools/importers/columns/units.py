@@ -57,7 +57,7 @@ _BY_NAME = {
 _INDEX = re.compile(r"\[\d+\]$")
 #: m/(sec^2), as Shimmer writes; no unit in brackets.
 _DENOMINATOR = re.compile(r"/\(([^()]*)\)$")
-_BRACKETS = re.compile(r"[\[({<]\s*([^\])}>]*?)\s*[\])}>]\s*$")
+_BRACKETS = re.compile(r"[\[({<]\s*(?:in\s)?([^\])}>]*?)\s*[\])}>]\s*$")
 
 
 def kind_of(target: str) -> str:
