@@ -343,7 +343,8 @@ def test_a_board_is_left_to_its_own_program_unless_told_otherwise(port, go_on):
         ("MemoryError: memory allocation failed", "docs/boards.md"),
         ("OSError: [Errno 28] ENOSPC", "mpremote rm"),
         ("OSError: 28", "mpremote rm"),
-        ("OSError: 5", "OSError: 5"),
+        ("OSError: 5", "OSError: 5$"),
+        ("ImportError: no module named 'zerorate_i2c'", "'zerorate_i2c'; zerorate flash sends it"),
     ],
 )
 def test_the_last_line_of_what_a_program_met_is_told_with_a_remedy(port, last, words):

@@ -63,7 +63,7 @@ def connected(port: str, go_on: bool = True) -> Iterator:
         _stop(transport)
         yield transport
     except TransportExecError as error:
-        raise BoardError(f"{port}: {_said(error.error_output)}") from error
+        raise BoardError(f"{port}: {said(error.error_output)}") from error
     except TransportError as error:
         raise BoardError(f"{port}: {error}; is MicroPython on this board?") from error
     finally:
@@ -124,9 +124,11 @@ def _plugged_in() -> str:
     return f"USB ports here: {', '.join(sorted(ports))}"
 
 
-def _said(traceback: str) -> str:
-    """What a program of these tools met on a board, and what to do."""
-    last = [line.strip() for line in traceback.splitlines() if line.strip()][-1]
+def said(traceback: str) -> str:
+    """What a program of these tools met on a board, and what to do; at the end there may be the
+    prompt of the raw REPL."""
+    lines = [line.strip("\x04\r >") for line in traceback.split("\n")]
+    last = [line for line in lines if line][-1]
     if last.startswith("MemoryError"):
         return (
             "the board has too little heap free; let its boot.py take less, leave out parts, or "
@@ -134,7 +136,8 @@ def _said(traceback: str) -> str:
         )
     if last.startswith(("OSError: 28", "OSError: [Errno 28]")):  # most boards name no ENOSPC
         return "the board's file system is full; delete files on it: mpremote rm :FILE"
-    return f"the board says: {last}"
+    sends = "; zerorate flash sends it" if "no module named 'zerorate" in last else ""
+    return f"the board says: {last}{sends}"
 
 
 def _let_run(serial) -> None:

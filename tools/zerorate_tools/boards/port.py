@@ -14,7 +14,7 @@ from ..ending import noted_signals
 from ..errors import ZerorateError
 from ..recordings import Scales
 from ..recordings.scales import scales_from_text
-from .connection import BoardError, connected
+from .connection import BoardError, connected, said
 from .recorder import COLUMNS, Heard, Recorded, SampleTaker, Take, recorded, scales_of
 
 _TICKS = 1 << 30
@@ -162,15 +162,10 @@ class BoardStream:
             self._tail = (self._tail + data)[-4096:]
         elif b"Traceback" in self._tail:
             # only when no more of it comes is its last line the one that says what is wrong
-            raise BoardError(f"{self._port}: the board says: {_last_line(self._tail)}")
+            raise BoardError(f"{self._port}: {said(self._tail.decode(errors='replace'))}")
         elif time.monotonic() - self._heard > _SILENCE_S:
             raise BoardError(f"{self._port}: silent for {_SILENCE_S:.0f} s")
         return self._reader.feed(data)
-
-
-def _last_line(text: bytes) -> str:
-    lines = [line.strip("\x04\r >") for line in text.decode(errors="replace").split("\n")]
-    return [line for line in lines if line][-1]
 
 
 def encode(kind: int, payload: bytes) -> bytes:
