@@ -18,6 +18,7 @@ import sys
 import tempfile
 from collections import Counter
 from fnmatch import fnmatch
+from operator import lshift, or_, rshift, sub, xor
 from pathlib import Path
 
 from cosmic_ray import plugins
@@ -40,9 +41,9 @@ _SAME_OF_SMALL_INTEGERS = ("Eq_Is", "NotEq_IsNot")
 # At the limit both are the limit.
 _LIMIT = re.compile(r"(?:return|=) (.+) if \1 [<>] (.+) else \2$")
 _AT_LIMIT = ("Lt_LtE", "Gt_GtE")
-# Of an index and 0 by name these make what + makes.
+# What may make the same of two numbers as + does, and does so of anything and 0.
 _SUM = re.compile(r"[\[(](\w+) \+ (\w+)[\])]")
-_ZERO_FIRST, _ZERO_SECOND = ("BitOr", "BitXor"), ("BitOr", "BitXor", "Sub", "LShift", "RShift")
+_LIKE_ADD = {"BitOr": or_, "BitXor": xor, "Sub": sub, "LShift": lshift, "RShift": rshift}
 _LAYOUT = re.compile(r"^# layout: .*?^# layout: end", re.MULTILINE | re.DOTALL)
 
 # Numbers that are committed: what boards ask their machine code for, and what a trace ends in.
@@ -293,8 +294,8 @@ def same(mutant, text, mutated=""):
     """Why the mutant of a line, which makes another of it, means the same; or ""."""
     if mutant[1].endswith(_AT_LIMIT) and _LIMIT.search(text):
         return "at the limit both are the limit"
-    if _is_of_zero(*mutant, text, mutated):
-        return "what is added, or added to, is 0"
+    if _sums_alike(*mutant, text, mutated):
+        return "it makes the same of these numbers"
     for entry in _listed()["same"]:
         names = entry["operators"]
         there = mutant[0].startswith(entry["file"]) and mutated in entry.get("become", [mutated])
@@ -304,15 +305,23 @@ def same(mutant, text, mutated=""):
     return ""
 
 
-def _is_of_zero(file, operator, text, mutated):
-    """Whether another operator stands where an index adds 0 by name, and makes the same of it."""
+def _sums_alike(file, operator, text, mutated):
+    """Whether another operator makes what + makes, of an index and 0 by name or of two numbers."""
     become, at = operator.partition("Operator_Add_")[2], len(os.path.commonprefix([text, mutated]))
     sums = [m.groups() for m in _SUM.finditer(text) if m.start() < at < m.end()]
-    if not become or not sums:
+    if become not in _LIKE_ADD or not sums:
         return False
     source = (REPOSITORY / file).read_text(encoding="utf-8")
-    first, second = (f"{name} = const(0)\n" in source for name in sums[0])
-    return (first and become in _ZERO_FIRST) or (second and become in _ZERO_SECOND)
+    one, other = (_constant(name, source) for name in sums[0])
+    if one is None or other is None:
+        return other == 0 or (one == 0 and become in ("BitOr", "BitXor"))
+    return _LIKE_ADD[become](one, other) == one + other
+
+
+def _constant(name, source):
+    """The number that a word of code is, by itself or by name; None where it is none."""
+    named = re.search(rf"^{name} = const\((-?\w+)\)$", source, re.MULTILINE)
+    return int(name) if name.isdigit() else int(named[1], 0) if named else None
 
 
 def _keyword_only(source):
