@@ -1,6 +1,7 @@
 """Pieces of one recording judged by the firmware itself, beside devices run one by one."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -79,6 +80,20 @@ def test_a_piece_s_model_is_fitted_to_the_others_and_run_by_its_device(power_on,
     assert not np.allclose(spared, left)
 
 
+def test_a_stretch_is_run_from_three_blocks_before_it(power_on):
+    pieces, told = PiecesByKernels(power_on, SCALES), []
+
+    def run(frames, learn):
+        told.append(len(frames) // PER)
+        return np.zeros((len(frames), 3)) + learn
+
+    left = pieces._left([SimpleNamespace(run=run)] * 10, whole=False)
+    begins = np.flatnonzero(np.diff(pieces.fold, prepend=-1))
+    ends = [*begins[1:], BLOCKS]
+    assert told == [end - max(begin - 3, 0) for begin, end in zip(begins, ends)]
+    assert left == pytest.approx(power_on.rate_dps)
+
+
 def test_what_the_firmware_cannot_hold_has_no_error_and_gains_nothing(power_on):
     pieces = PiecesByKernels(power_on, SCALES)
     beyond = replace(VOLTS, lag_mode="lag", lag_s=1e9)
@@ -114,6 +129,7 @@ def test_of_one_recording_every_way_is_run_and_scored(by_pieces):
     every = pieces.residual([], [VOLTS, LAGGED], np.ones((2, 3)))
     assert course.residual["after"] == pytest.approx(every, abs=0.1 / 131)
     assert course.unscored == 0 and course.offset_dps == {}
+    assert course.bias["online_before"][-1, 1] * 131 == pytest.approx(-20, abs=2)  # it learns
     given = {"online": lambda frames: np.full((len(frames), 3), 256 * 131)}
     other = m.course(lambda *a: None, given)
     assert other.bias["online"] == pytest.approx(np.ones((BLOCKS, 3)))

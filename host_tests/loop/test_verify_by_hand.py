@@ -289,6 +289,7 @@ def judgement(before, after, gains, p=1.0):
     ("after", "gain", "p", "said"),
     [
         *(([1.0, 1.0, 1.0], 3.1, 1.0, "confirmed"), ([1.0, 1.0, 1.0], 3.0, 1.0, "tentative")),
+        ([0.9, 0.9, 0.9], 2.9, 1.0, "tentative"),
         *(([1.0, 1.0, 1.01], 9.0, 1.0, "tentative"), ([0.5, 0.5, 0.5], 9.0, 1e-9, "tentative")),
     ],
 )
@@ -662,6 +663,14 @@ def test_without_a_model_after_is_as_before(counting, pair):
     some.learn()
     assert some.course("a", False, nothing) == []
     assert some.course("a", True, nothing) == ["online", "online_before"]
+
+
+@pytest.mark.parametrize(
+    ("few", "single", "inside"), [(True, False, ["a", "b"]), (True, True, []), (False, False, [])]
+)
+def test_where_few_were_fitted_pieces_of_them_are_left_out_too(few, single, inside):
+    train = [SimpleNamespace(name=name) for name in "ab"]
+    assert run_kernels._inside(SimpleNamespace(train=train, few=few, single=single)) == inside
 
 
 def test_models_are_none_those_of_the_first_effects_and_the_whole_one(warm):

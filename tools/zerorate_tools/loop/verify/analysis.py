@@ -105,7 +105,7 @@ def deployable(analysis: Analysis, scales: Scales) -> Analysis:
     Raises CannotDeploy for what was found in motion.
     """
     number = len(analysis.selection.found)
-    for effects in (*range(1, number + 1), None):
+    for effects in (*range(1, number), None):
         try:
             model_of(analysis, scales, effects)
         except CannotDeploy as problem:
