@@ -345,8 +345,7 @@ def test_a_bus_that_opens_but_is_none_leaves_no_descriptor(tmp_path):
 
 def test_a_slow_reader_gets_whole_lines_and_holds_nobody_up(tmp_path):
     sink = UnixSocket(tmp_path / "imu.sock")
-    reader = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
-    reader.connect(str(tmp_path / "imu.sock"))
+    reader = reader_of(tmp_path / "imu.sock")
     for number in range(20000):
         sink.put(json.dumps({"number": number, "more": "x" * 100}).encode() + b"\n")
     sink.close()
