@@ -13,7 +13,15 @@ from zerorate_tools.layout import EFFECTS, SLOT, STATE, slot_at
 from zerorate_tools.model import Slot, build_model, encoded
 from zerorate_tools.model.term import Term, evaluate
 
-from .simulated_sources import A_TICK, SCALES, columns, loaded, on_firmware, tick_means
+from .simulated_sources import (
+    A_TICK,
+    EVERY_SLOT,
+    SCALES,
+    columns,
+    loaded,
+    on_firmware,
+    tick_means,
+)
 from .test_effects import BASES, CENTRES, TENTH_OF_THE_FLOOR_DPS, term_over
 
 PLAYS = [
@@ -164,13 +172,26 @@ def test_frames_that_are_no_readings_let_time_pass_and_nothing_else():
 
 
 def test_a_power_on_begins_every_memory_anew(warm_up):
-    raw = {name: values[:4000] for name, values in warm_up[0].items()}
-    terms = [term_over("temp", BASES[n], *CENTRES["temp"]) for n in ("peak", "lag", "short delay")]
-    model = loaded([Slot(t, (0.01, -0.02, 0.03)) for t in (*terms, Term("one", decay_s=100.0))])
+    raw = {name: values[:2000] for name, values in warm_up[0].items()}
+    decays = Slot(Term("one", decay_s=100.0), (0.01, -0.02, 0.03))
+    model = loaded([decays, *EVERY_SLOT[1:], *PLAYS])
     first = on_firmware(model, raw)
-    on_firmware(model, columns(seed=5))
+    on_firmware(model, {name: values[:3001] for name, values in columns(seed=5).items()})
     model.power_on()
     assert (on_firmware(model, raw) == first).all()
+
+
+def test_what_is_sensed_is_the_frame_less_the_effects_of_which_nothing_is_lost():
+    rng, e = np.random.default_rng(1), EffectModel().e
+    state, asked, given = array("i", [0] * STATE.FIT_WEIGHTS), 0, 0
+    for _ in range(40):
+        frame, effect = rng.integers(-9000, 9000, 7), rng.integers(-5000, 5000, 3)
+        state[STATE.EFFECT_Q8 : STATE.EFFECT_Q8 + 3] = array("i", effect.tolist())
+        effects.lessen(state, e, array("i", frame.tolist()))
+        sensed, carry_q8 = np.array(e[EFFECTS.SENSED :][:7]), e[EFFECTS.SENSED_CARRY_Q8 :][:3]
+        assert (sensed[:4] == frame[:4]).all() and np.abs(carry_q8).max() <= 128
+        asked, given = asked + 256 * frame[4:] - effect, given + 256 * sensed[4:]
+        assert (given + carry_q8 == asked).all()
 
 
 def test_a_sample_as_long_as_a_tick_is_corrected_by_its_own_temperature():
