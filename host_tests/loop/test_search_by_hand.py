@@ -1,7 +1,7 @@
 """What a search is told, may propose and must pay: beside plain sums and dense solutions."""
 
 from dataclasses import replace
-from itertools import combinations, product
+from itertools import combinations
 from types import SimpleNamespace
 
 import numpy as np
@@ -580,31 +580,12 @@ def test_no_step_is_looked_for_beside_motion():
     assert sorted(set(range(10, 36)) - set(step_places._ground(session))) == [20, 21, 22]
 
 
-def slow_change(kind, first, length):
-    """(60,) of a ramp, or of what settles, that begins so many blocks from the start."""
-    since = np.arange(60) + 0.5 - first
-    return np.clip(since / length, 0, 1) if kind == "ramp" else -np.expm1(-since.clip(0) / length)
-
-
-@pytest.mark.parametrize("kind", ["ramp", "settles"])
-def test_a_slow_change_explains_as_much_as_the_best_of_all_lengths_and_starts(kind):
-    made = [dense.made(seed, 60) for seed in (4, 5)]
-    made[0].rate_dps[:] += np.outer(slow_change(kind, 28.0, 4.0), [9.0, -9.0, 9.0])
-    told = step_places.best_slow(Regression(made), [A], 0, [28.0, 32.0])
-    lengths = 4.0 * np.array([0.5, 0.75, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0])
-    every = [*product(("ramp", "settles"), np.arange(24.0, 32.0, 0.25), lengths)]
-    for s in made:
-        s.sources |= {f"e{k}": slow_change(*of) * (s is made[0]) for k, of in enumerate(every)}
-    forms = [(Term(f"e{k}"),) for k in range(len(every))]
-    assert told == pytest.approx(Regression(made).gains([A], forms).sum(axis=1).max(), rel=1e-6)
-
-
 @pytest.mark.parametrize(("ramp", "sharper"), [(0.0, (20.0, 1e9)), (12.0, (-1e9, -10.0))])
 def test_a_step_explains_more_than_a_ramp_and_a_ramp_more_than_a_step(ramp, sharper):
     made = [dense.made(seed, 60) for seed in (4, 5)]
     for s in made:
         s.rate_dps[:] = np.random.default_rng(int(s.name[1])).normal(size=(60, 3))
-    change = slow_change("ramp", 32.0 - ramp / 2, max(ramp, 1.0))
+    change = np.clip((np.arange(60) + 0.5 - 32.0) / max(ramp, 1.0) + 0.5 * bool(ramp), 0, 1)
     made[1].rate_dps[:] += np.outer(change, [9.0, -9.0, 9.0])
     assert sharper[0] < step_places.beyond_ramps(Regression(made), [A], 1, 32.0) < sharper[1]
 

@@ -20,8 +20,6 @@ _QUARTERS = np.arange(-3, 4) / 4
 #: Blocks from the middle of a ramp to either end, and shares of them that it is off the place.
 _RAMPS, _OFF = np.array([2.0, 4.0, 8.0]), np.array([-0.5, 0.0, 0.5])
 LONGEST = float(_RAMPS.max())
-#: Lengths of a slow change, of what two steps are apart.
-_OF_SPAN = np.array([0.5, 0.75, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0])
 
 
 @dataclass
@@ -93,17 +91,6 @@ def beyond_ramps(regression, terms, session: int, at: float) -> float:
     steps = heavisides(own, _around(own, at))
     found = _Beside(regression, terms).ratios(session, np.hstack([steps, ramps]))
     return float(found[: steps.shape[1]].max() - found[steps.shape[1] :].max())
-
-
-def best_slow(regression, terms, session: int, at: list[float]) -> float:
-    """What the best slow change around some places explains: a ramp or an exponential, of lengths
-    about theirs, as twice a gain in log likelihood."""
-    span = max(at) - min(at)
-    first = np.arange(min(at) - span, max(at), 0.25)
-    since = np.arange(regression.sessions[session].blocks)[:, None] + 0.5 - first
-    columns = [np.clip(since / (share * span), 0.0, 1.0) for share in _OF_SPAN]
-    columns += [-np.expm1(-np.maximum(since, 0.0) / (share * span)) for share in _OF_SPAN]
-    return float(_Beside(regression, terms).ratios(session, np.hstack(columns)).max())
 
 
 def best_place(regression, terms) -> tuple[Place | None, list]:

@@ -18,7 +18,7 @@ from .catalogue import Candidate, candidates, lags, late
 from .decide import LEVEL
 from .drift_test import follows_time
 from .refine import refined
-from .step_places import EDGE, LONGEST, best_place, best_slow, beyond_ramps, heavisides, tried
+from .step_places import EDGE, LONGEST, best_place, beyond_ramps, heavisides, tried
 
 MOST_PER_SESSION = 4
 _AWAY = 15  # blocks from a step at which a step beside it no longer shows it
@@ -32,8 +32,6 @@ _BESIDE_OTHERS = 1e-4
 #: What a step must explain more than the best ramp in its place, as twice a gain in log likelihood:
 #: less than nothing, for noise that flickers makes a ramp of a small step.
 _LEAST_BEYOND = -4.0
-#: The same of two of one sign beside the best slow change: they have sizes and a place more.
-_BOTH_BEYOND = 20.0
 #: The likelihood ratio of a form over channels beside which steps must stand.
 _A_FORM = 45.0
 
@@ -262,20 +260,11 @@ def _sized(regression, terms, steps, kept=()) -> list[Step]:
 
 def _is_no_ramp(regression, terms, steps, step, kept) -> bool:
     """Whether no ramp explains clearly more than the step, where those near it are taken out: a
-    slow loop looks like a ramp or like a few small steps. Two near each other may stand together.
-    """
-    near = [s.session == step.session and abs(s.block - step.block) <= LONGEST for s in steps]
-    others = [s for s, beside in zip(steps, near) if not beside]
-    _set(regression, others, kept)
-    if beyond_ramps(regression, terms, step.session, step.block - step.share) > _LEAST_BEYOND:
-        return True
-    both = [s for s, beside in zip(steps, near) if beside]
-    if len(both) != 2 or both[0].size_dps @ both[1].size_dps < 0:
-        return False
-    slow = best_slow(regression, terms, step.session, [s.block - s.share for s in both])
-    alone = regression.fit(terms).total
-    _set(regression, [*others, *both], kept)
-    return 2.0 * (regression.fit(terms).total - alone) - slow > _BOTH_BEYOND
+    slow loop looks like a ramp or like a few small steps."""
+    far = [s for s in steps if s.session != step.session or abs(s.block - step.block) > LONGEST]
+    _set(regression, far, kept)
+    beyond = beyond_ramps(regression, terms, step.session, step.block - step.share)
+    return beyond > _LEAST_BEYOND
 
 
 def _is_unseen(session, block: int) -> bool:
