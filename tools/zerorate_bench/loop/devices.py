@@ -63,7 +63,7 @@ _SEEDS["curve"], _CURVE_POWER_ONS = 900_000, (4, 6)
 _OF_A_CURVE, _CURVE_FLOORS = 0.65, 3.0
 CURVE = "3x curve of a channel"
 #: Recordings in which a sharp turn of the temperature may be taken for a step.
-CORNERS, _SEEDS["corners"], _CORNERS_A_SEED = "corners of temperature", 1_000_000, 15
+CORNERS, _SEEDS["corners"], _CORNERS_A_SEED = "corners of temperature", 5_000_000, 15
 NULL, REAL, OUT, HIDDEN, TWO = "nothing", "real noise", "outside", "not recorded", "two at once"
 #: A step has an RMS about the mean of 3 floors, half its jump, as every effect's size is its RMS;
 #: a small one a jump of 3 floors.
