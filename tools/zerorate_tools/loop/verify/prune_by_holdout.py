@@ -131,10 +131,9 @@ def without_unshown(
     least = int(np.argmax(chances))
     if chances[least] <= _LEVEL:
         return selection
-    better = (
-        f"{(gained[least] > 0).sum()} of {len(gained[least])} pieces left out are better with it"
-    )
-    said = selection.found[least].candidate.label, f"{better}, as by chance"
+    better, number = (gained[least] > 0).sum(), len(gained[least])
+    why = f"better on {better} of {number} pieces left out, which may be chance"
+    said = selection.found[least].candidate.label, why
     less = selection.without(least)
     return replace(less, withdrawn=[*less.withdrawn, said])
 
