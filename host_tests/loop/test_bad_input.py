@@ -82,6 +82,11 @@ def test_motion_without_acceleration_is_told_what_would_tell_of_it(tmp_path):
         close(logs, tmp_path / "closed")
 
 
+def test_of_many_short_recordings_three_are_named(closing):
+    with pytest.raises(CannotClose, match=r"^s0: [^;]*; 2 [^;]*; s1: .*; s2: .*; 2 more rest too"):
+        closing([at_rest(i, 300) for i in range(5)])
+
+
 def test_recordings_all_in_motion_are_told_to_rest(closing):
     every = [at_rest(i) for i in range(2)]
     for i, one in enumerate(every):

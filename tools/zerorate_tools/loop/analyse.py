@@ -46,6 +46,9 @@ from .verify.prune_by_holdout import prune_by_holdout
 
 Logs = Mapping[str, str | PathLike[str]]
 
+#: Recordings that are named, of those with too little rest.
+_MOST_SAID = 3
+
 
 # The matrices are small: more threads wait for each other three times as long as one works.
 @threadpool_limits.wrap(limits=1, user_api="blas")
@@ -126,7 +129,7 @@ def sessions_of(ticks: list[Ticks]) -> tuple[list[Session], GateReport]:
     same_settings(ticks)
     without_long_gaps(ticks)
     sessions = sessions_from(ticks)
-    kept, problems = [], []
+    kept, problems, notes = [], [], []
     for s in sessions:
         try:
             enough(s)
@@ -135,11 +138,18 @@ def sessions_of(ticks: list[Ticks]) -> tuple[list[Session], GateReport]:
             problems.append(str(problem))
             moves = may_show_motion(s)
             gate.moving += [s] if moves else []
-            gate.notes.append(f"{'looked at in motion alone' if moves else 'left out'}: {problem}")
+            notes.append(f"{'looked at in motion alone' if moves else 'left out'}: {problem}")
+    gate.notes += _first(notes)
     if not kept:
-        raise TooLittleRest("; ".join(problems))
+        raise TooLittleRest("; ".join(_first(problems)))
     for name in {n for t in ticks for n in t.extra if n in OWN_SOURCES}:
         gate.dropped[name] = "named like a source of the model's own: rename the column"
     shaken(kept, gate)
     usable_channels(kept, gate)
     return kept, gate
+
+
+def _first(said: list[str]) -> list[str]:
+    """The first of many that are much alike, and how many more there are."""
+    more = len(said) - _MOST_SAID
+    return [*said[:_MOST_SAID], f"{more} more rest too little"] if more > 0 else said
