@@ -9,6 +9,7 @@ from zerorate import Corrector, Sensor
 GYRO_LSB_PER_DPS = 131.2  # of its data sheet, at +-250 dps
 chip = Driver(0x69)
 chip.setFullScaleGyroRange(3, 250)
+# Hz; LSB a dps, a g and a degC; degC at a raw 0
 corrector = Corrector(Sensor(100.0, GYRO_LSB_PER_DPS, 16384.0, 512.0, 23.0))
 sample = array("i", [0] * 7)  # ax ay az temp gx gy gz, raw LSB
 before_us = time.monotonic_ns() // 1000

@@ -75,43 +75,43 @@ _ONE_G = const(57)
 _QUIETEST_Q8 = const(58)
 _SETTINGS_WORDS = const(59)
 # layout: end
-# of how many times the variance that noise gives it gravity's slope may be: 15 by chi squared of 3
+# at rest the slope of gravity has at most this times its variance by noise: chi squared of 3 is 15
 _TILT_NOISE = const(5)
 _QUIETEST_DPS = 0.005  # of an axis: 2 mdps a root hertz through a filter of 5 Hz
 # What a user may set, in its unit. A time of readings is that many at the output data rate.
 DEFAULTS = {
     "window_s": 0.25,  # a window
     "segment_s": 2.5,  # a segment: what is learned at once
-    "still_dps": 0.3,  # most spread of three rates together in a still window, but for white noise
-    "still_g": 0.03,  # most spread of the accelerations in it
-    "turn_dps": 0.03,  # gravity must not show a faster turn within a segment
+    "still_dps": 0.3,  # most spread of the three rates in a still window, white noise excepted
+    "still_g": 0.03,  # most spread of the accelerations in a still window
+    "turn_dps": 0.03,  # a segment in which gravity shows a faster turn is not learned
     "change_dps": 0.08,  # most that the mean rate changes within a segment
     "slew_dps_per_s": 0.5,  # fastest change of the bias that is subtracted
     "range_dps": 40.0,  # reach of an empty histogram, where every reading is learned
     "narrowest_dps": 0.5,  # no bin gets narrower
     "step_degc": 1.0,  # an estimator's range of temperature
-    "margin_degc": 0.15,  # how far beyond it the one in use stays in use
+    "margin_degc": 0.15,  # how far beyond that range the estimator in use stays in use
     "promote_s": 4.0,  # readings that make an estimator worth keeping
     "halve_after_s": 3600.0,  # readings after which the counts are halved
     "fit_s": 2.0,  # readings that make an estimator a point of the line
     "counted_s": 20.0,  # more readings weigh no more in the line
     "local_degc": 3.0,  # half the width of the line's neighbourhood
-    "stable_s": 2.5,  # readings with which an estimator speaks for its temperature
-    "share": 0.125,  # and at least so many of all the line's readings
-    "beyond_degc": 0.5,  # how far outside the line's points a bias is said to lie beyond
-    "refit_degc": 0.25,  # the line is fitted again where the temperature moved so far
+    "stable_s": 2.5,  # readings with which an estimator counts as known at its temperature
+    "share": 0.125,  # least share of the line's readings that such an estimator has
+    "beyond_degc": 0.5,  # a bias farther outside the line's points is reported as beyond them
+    "refit_degc": 0.25,  # change of temperature after which the line is fitted again
     "floor_dps": 0.002,  # flicker noise at first: by how much rests differ beyond white noise
     "gate_dps": 0.3,  # a rest this near to what was expected is plausible
     "turning_dps": 1.0,  # one sigma of what an apparent rest may turn about the vertical
-    "turning_s": 100.0,  # a rest of that time halves it
-    "insist_s": 60.0,  # an implausible rest that lasts so long is believed
-    "walk_dps": 0.0013,  # speed of the offset's walk at first, a root second
-    "walk_least_dps": 0.0001,  # slowest that is learned
-    "walk_most_dps": 0.05,  # and fastest
+    "turning_s": 100.0,  # each such time of one unbroken rest halves `turning_dps`
+    "insist_s": 60.0,  # an implausible rest that lasts this long is learned
+    "walk_dps": 0.0013,  # random walk of the offset at first, dps a root second
+    "walk_least_dps": 0.0001,  # least random walk that is learned
+    "walk_most_dps": 0.05,  # most random walk that is learned
     "turn_on_dps": 0.02,  # one sigma of the turn-on offset, until power-ons show it
     "slope_dps_per_degc": 0.02,  # how fast the bias leaves the line beyond its points, at first
-    "motion_most_dps": 0.15,  # another source's bias less well known teaches nothing
-    "motion_full_dps": 0.01,  # one sigma with which it counts as one still reading
+    "motion_most_dps": 0.15,  # most one sigma of a bias of motion or gravity that the curve learns
+    "motion_full_dps": 0.01,  # one sigma with which such a bias counts as one still reading
     "motion_start_dps": 20.0,  # one sigma of the bias in motion before anything is known
     "split_s": 0.01,  # readings in a bin that may be split, by the document
 }

@@ -56,7 +56,7 @@ def found():
 
 
 def verdicts(found):
-    (line,) = (line for line in in_markdown(found).splitlines() if "is it?" in line)
+    (line,) = (line for line in in_markdown(found).splitlines() if "**met**" in line)
     return [cell.strip() for cell in line.split("|")[2:-1]]
 
 

@@ -128,7 +128,7 @@ def effect_table():
     """Every effect that the loop knows: its kind, in words, what it says."""
     titles = [f"{'any channel: ' * (row.source == ANY_CHANNEL)}{row.title}" for row in EFFECTS]
     rows = [f"| `{row.kind}` | {t} | {row.meaning} |" for row, t in zip(EFFECTS, titles)]
-    return "\n".join(["| effect | | |", "|---|---|---|", *rows, ""])
+    return "\n".join(["| effect | title | meaning |", "|---|---|---|", *rows, ""])
 
 
 def option_table(names):

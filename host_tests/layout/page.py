@@ -164,22 +164,22 @@ _CONSTANT = re.compile(r"^_(\w+) = const\((\w+)\)  # (.+)$", re.MULTILINE)
 _HEAD_SETTINGS_PAGE = """# What a user may set
 
 Made from `firmware/zerorate/settings.py` by `make layout`; edit that file. Give any of them by
-name: `Corrector(sensor, still_dps=0.5)`. The unit is behind the last `_`. A time of readings, as
-`promote_s`, is as many readings as the output data rate gives in it. The words that a setting
-makes are in [layout.md](layout.md). Outside of its range `Corrector` raises ValueError; within
-them, and within those of `Sensor`, nothing leaves 31 bits (`make sweep`). A window has a power of
-two samples, 4 to 256, as near to `window_s` as it gets. A segment has at most eight windows. At
-100 Hz a segment of 2.5 s is 2.56 s long.
+name: `Corrector(sensor, still_dps=0.5)`. A name ends with its unit. A time of readings, such as
+`promote_s`, is as many readings as the output data rate gives in it. `Corrector` raises ValueError
+outside of a range. Within all ranges, and those of `Sensor`, no number needs more than 31 bits
+(`make sweep`). A window has a power of two samples, 4 to 256, as near to `window_s` as possible. A
+segment has at most eight windows: at 100 Hz one of 2.5 s is 2.56 s long. The last column names the
+words of [layout.md](layout.md) that a setting makes.
 
-To change one for good, edit `DEFAULTS` there and run `make layout`.
+To change a default, edit `DEFAULTS` there and run `make layout`.
 
-`zerorate close` honours none of them: it computes with the defaults below, whatever the device
-used. `zerorate_tools.replay` takes any of them by name.
+`zerorate close` ignores your settings: it computes with the defaults below.
+`zerorate_tools.replay` takes any of them by name.
 """
-_FIXED = """## What is not set but fixed
+_FIXED = """## Fixed constants
 
-In `firmware/zerorate/rest/stillness.py`, with the rules that decide that a window is still, and how
-its temperature is followed:
+These stand in `firmware/zerorate/rest/stillness.py`, beside the rules by which a window is still
+and its temperature is followed:
 """
 
 
@@ -189,7 +189,7 @@ def settings_page(repository):
     source = (firmware / "settings.py").read_text(encoding="utf-8")
     meanings, words = dict(_ENTRY.findall(source)), words_made(source)
     rows = [
-        "| setting | default | by the document | at least | at most | what | makes |",
+        "| setting | default | by the document | at least | at most | meaning | words |",
         "|---|---|---|---|---|---|---|",
     ]
     for name, value in DEFAULTS.items():
@@ -202,7 +202,7 @@ def settings_page(repository):
     stillness = (firmware / "rest" / "stillness.py").read_text(encoding="utf-8")
     white = re.search(r"([\d.]+ to [\d.]+) times is taken for noise", stillness)
     fixed.append(
-        f"| in `white` | {white[1]} | steps of samples, squared, for their variance: noise |"
+        f"| in `white` | {white[1]} | mean squared step of the samples over their variance: noise |"
     )
     tilt = re.search(r"# (.+)\n_TILT_NOISE = const\((\d+)\)", source)
     fixed.append(f"| `TILT_NOISE` in settings.py | {tilt[2]} | {tilt[1]} |")

@@ -50,7 +50,7 @@ _HONESTY = """\
 The share of the last power-on in which the truth lies within two `quality_lsb`, with all sources
 on. 95 % would be exact. The firmware learns one sigma from the part itself: from its flicker
 noise, its walk, and how well its power-ons repeat
-([learning.md](learning.md#what-it-says-of-itself)).
+([learning.md](learning.md#reported-uncertainty)).
 """
 _REAL = """\
 RMS over axes and over means of 20 s. The true rate is zero, but for Earth's 4 mdps. Blocks in

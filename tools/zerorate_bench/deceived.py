@@ -38,20 +38,25 @@ _STEPS = 2 * len(WORLDS) + 1
 LIMITS = {KNOWN: (2.0, 100.0), COLD: (10.0, float("inf"))}
 _LEAST_HONEST, _LEAST_FOLLOWED = 90.0, 95.0
 _INTRODUCTION = """\
-# Sure of a wrong bias, measured
+# Certain of a wrong bias, measured
 
 `zerorate bench deceived --seeds {seeds}` wrote this page.
 
-A run is ten minutes in a world whose turns look like a bias, at 25, 50 or 100 Hz, with 0.03 to 0.1
-dps of noise. It counts when an axis is off by more than three of its own sigmas and 20 mdps for
-over 60 s in all. Worst is the largest error while it is. Honest is the share of the time in which
-the truth lies within two sigma. Known: 90 to 200 s of rest, and five in the hand, before the world.
-Each row has {seeds} runs; the worlds are in `bench/deceived_worlds.py`.
+Each row has {seeds} runs: ten minutes of turns that look like a bias, at 25, 50 or 100 Hz, with
+0.03 to 0.1 dps of noise (`tools/zerorate_bench/deceived_worlds.py`). An axis is certain of a wrong
+bias while its error exceeds both 20 mdps and three of its own sigmas.
+
+| column | what it is |
+| --- | --- |
+| wrong for 60 s | runs in which an axis is certain of a wrong bias for more than 60 s in all |
+| worst, mdps | largest such error, however briefly |
+| within 2 sigma | share of the time in which the truth lies within two sigma |
 """
-_HEAD = ["world", "runs that count", "worst, mdps", "honest", "must be", "is it?"]
+_HEAD = ["turns", "wrong for 60 s", "worst, mdps", "within 2 sigma", "must be", "met"]
+_TITLES = {KNOWN: "After 90 to 200 s of rest and 5 s in the hand", COLD: "Nothing known before"}
 _FOLLOWED = """\
-A real jump: after 90 s or more of rest a knock moves the bias by 0.2 to 3 dps on every axis; true
-rests of 15 to 60 s follow. Followed: within 20 mdps on every axis after 90 s of rest.
+After 90 s or more of rest a knock moves the bias by 0.2 to 3 dps on every axis. True rests of 15 to
+60 s follow. The jump is followed if every axis is within 20 mdps after 90 s of rest.
 """
 
 
@@ -184,12 +189,12 @@ def run(seeds: int, advance: Callable[[float], None] = lambda n: None) -> dict[s
 def in_markdown(found: Mapping[str, Any]) -> str:
     """The page: a table for each that was known before, and the knock."""
     parts = [_INTRODUCTION.format(seeds=found["seeds"])]
-    for before, title in ((KNOWN, "Known before"), (COLD, "Nothing known before")):
+    for before, title in _TITLES.items():
         parts += [f"## {title}\n", table(_HEAD, list(_rows(found[before], before)))]
     share = 100 * float(np.mean(found["followed"]))
     met = "yes" if share >= _LEAST_FOLLOWED else "**NO**"
     row = [_KNOCK, f"{share:.0f} %", f"at least {_LEAST_FOLLOWED:.0f} %", met]
-    parts += ["## A jump\n", _FOLLOWED, table(["", "followed", "must be", "is it?"], [row])]
+    parts += ["## A jump\n", _FOLLOWED, table(["", "followed", "must be", "met"], [row])]
     return "\n".join(parts)
 
 
@@ -207,7 +212,7 @@ def _row(rows: list[dict], before: str) -> list[str]:
     met = 100 * count <= most * len(rows) and worst <= most_mdps
     wanted = f"at most {most:.0f} %"
     if before == COLD:
-        met, wanted = met and honest >= _LEAST_HONEST, wanted + ", honest 90 %"
+        met, wanted = met and honest >= _LEAST_HONEST, wanted + ", 90 % within 2 sigma"
     else:
         wanted += f", {most_mdps:.0f} mdps"
     shown = [f"{count} of {len(rows)}", number(worst), f"{honest:.0f} %", wanted]

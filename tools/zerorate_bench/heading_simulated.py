@@ -199,7 +199,7 @@ def _of_kind(kind: str, rows: list[dict]) -> list[str]:
 
 
 _HEADS = ["motion", "deployed", "entries found", "95 %?", "within two sigma", "90 to 99 %?", "left"]
-_MORE = ["devices", "so many", "at most", "is it?"]
+_MORE = ["devices", "how many", "at most", "met"]
 _INTRODUCTION = """\
 # Heading in simulated motion, measured
 

@@ -92,7 +92,7 @@ def _errors(scenarios: Mapping) -> Iterator[list[str]]:
     for way in next(iter(scenarios.values())):
         yield [way, *(_cell(rows[way]) for rows in scenarios.values())]
     yield ["**must be**", *(_wanted(name) for name in scenarios)]
-    yield ["**is it?**", *(_kept(scenarios, name) for name in scenarios)]
+    yield ["**met**", *(_kept(scenarios, name) for name in scenarios)]
 
 
 def _cell(row: Mapping) -> str:

@@ -110,7 +110,7 @@ def _on_broad(folders: Sequence[Path]) -> dict[str, list[float]]:
 def in_markdown(found: dict) -> str:
     """The page."""
     heads = ["ten minutes of", "left, %", "worst, %", "within two sigma", "wrong", "heading, deg"]
-    trial = ["trial", "second half", "by its first half", "all", "by another trial", "worst"]
+    trial = ["trial", "half", "by its first half", "all", "by another trial", "by the worst trial"]
     return "\n".join(
         [
             _WORDS.format(n=found["devices"]),
@@ -141,15 +141,20 @@ _WORDS = """\
 
 `zerorate bench own-axes` wrote this page: {n} simulated devices a row, and nine trials of BROAD.
 
-The filter in motion estimates nine entries of scale and axes, beside the bias. The firmware does
-not subtract them. This page shows what that would do. An entry is its mean under a prior of 1 %.
-Its weight is one less its share of the prior's variance. Left is the RMS of the nine entries
-afterwards, a median. An entry is wrong if it leaves 0.2 % more than before, and three of its
-sigmas. Heading is lost within 6,000 samples. It stands before and after, a median.
+Beside the bias, the filter in motion estimates the nine entries of the matrix of scale factors and
+axes. The firmware does not subtract them. This page shows what subtracting them would do. An entry
+is the posterior mean under a prior of 1 %, times one less its share of the prior's variance.
+
+| column | what it is |
+| --- | --- |
+| left, worst | RMS of the nine entries afterwards: median and worst device |
+| within two sigma | share of the entries whose truth lies within two sigma |
+| wrong | entries whose error is above three sigma, and 0.2 % above that without the estimate |
+| heading | degrees RMS that 6,000 samples lose, before -> after: median device |
 """
 _BROAD = """\
-This is the heading lost on BROAD, in degrees, as in [heading-figures.md](heading-figures.md). The
-second half of the motion is judged first, without the entries and with those of the first half.
-Then all of it is judged, without and with those of one other trial of the same device. The last
-columns are the median and the worst of these.
+This is the heading lost on BROAD, in degrees, as in [heading-figures.md](heading-figures.md).
+"Half" is the second half of the motion, without the entries and with those of the first half. "All"
+is the whole motion, without the entries and with those of another trial of the same group: median
+and worst of these trials.
 """

@@ -36,8 +36,10 @@ _CHIP = (
     option("--hz N", "samples a second (100)", above_zero, dest="odr_hz"),
     _range("--dps", "gyroscope", GYRO_RANGES_DPS, "full_scale_dps"),
     _range("--g", "accelerometer", ACCEL_RANGES_G, "full_scale_g"),
-    option("--dlpf-hz N", "bandwidth of the gyroscope's low-pass filter (by --hz)", above_zero),
-    option("--part NAME", "name of the part, as MPU-6500, if its id is unknown"),
+    option(
+        "--dlpf-hz N", "bandwidth of the gyroscope's low-pass filter (default: by --hz)", above_zero
+    ),
+    option("--part NAME", "name of the part, such as MPU-6500, if its id is unknown"),
 )
 
 
@@ -54,7 +56,7 @@ def _chip(arguments: argparse.Namespace) -> dict[str, Any]:
     option("-o --out FILE", ".parquet, .csv or .csv.gz", Path),
     option("--recover FILE", "finish the .partial.csv of a killed recording", Path),
     option("--seconds S", "stop after this time", above_zero),
-    switch("--guide", "say how to turn the device until its scale factors and axes are known"),
+    switch("--guide", "show how to turn the device until its scale factors and axes are known"),
     group("the chip, without --setup", *_CHIP),
     group(
         "on a board",

@@ -39,7 +39,9 @@ def sources(default: str = "yes") -> tuple[Arguments, Arguments]:
     option("--state FILE", "write the final state", Path),
     option("--from-state FILE", "start from a state that --state wrote", Path),
     switch("--resume", "with --from-state: continue the same power-on"),
-    switch("--document", "follow the patents to the letter, with --motion and --gravity too"),
+    switch(
+        "--document", "follow the patent to the letter; with --motion and --gravity, theirs too"
+    ),
     switch("--rests", "with --document: learn only from rests"),
     switch("--every", "learn from every reading, moving or still"),
     option("--model FILE", "an effect model to load", Path),
@@ -96,7 +98,7 @@ def _shares(counts: dict[str, int], total: int) -> str:
     option("--holdout LOG", "the recording to hold out (default: the last)"),
     switch(
         "--online",
-        "also write bias_online_g? to corrected.parquet: of a firmware that keeps learning",
+        "also write bias_online_g?, of a firmware that keeps learning, to corrected.parquet",
     ),
     JSON,
     description="Each LOG is one power-on of one device. Fit a correction to all but one LOG, and "
@@ -168,7 +170,8 @@ def run_compare(arguments: argparse.Namespace) -> None:
     "allan",
     "Allan deviation of a recording at rest",
     option("log LOG", "a recording with a long rest", Path),
-    description="Allan deviation of the longest still stretch (overlapping, IEEE Std 952).",
+    description="Print the Allan deviation of the longest still stretch "
+    "(overlapping, IEEE Std 952).",
 )
 def run_allan(arguments: argparse.Namespace) -> None:
     from ..allan import overlapping

@@ -84,7 +84,7 @@ _CHOSEN = "scale to write (default: chosen from the data)"
     "convert a recording of another program or device",
     option(
         "sources SRC",
-        "a recording; files of its sensors; or recordings of one device",
+        "a recording; or the files of its sensors; or several recordings of one device",
         Path,
         nargs="+",
     ),

@@ -78,7 +78,11 @@ def run_diff(arguments: argparse.Namespace) -> int:
     return 1 if found else 0
 
 
-with_actions("state", "print the words of a stored state")
+with_actions(
+    "state",
+    "print the words of a stored state",
+    "Look at a stored state: learned.bin, or a file of `replay --state`.",
+)
 
 
 @command(
@@ -104,7 +108,12 @@ def run_state(arguments: argparse.Namespace) -> None:
     print(in_words(found))
 
 
-with_actions("export", "write the firmware as C", metavar="LANGUAGE")
+with_actions(
+    "export",
+    "write the firmware as C",
+    "Write the firmware as C, for a device without MicroPython.",
+    metavar="LANGUAGE",
+)
 
 
 @command(
