@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 from zerorate_tools.loop.fit import line, single
-from zerorate_tools.loop.fit.free_curve import draw, is_curve, parts
+from zerorate_tools.loop.fit.free_curve import draw, is_curve, of_any_form, parts
 from zerorate_tools.loop.fit.intervals import block_bootstrap, rms
 from zerorate_tools.loop.fit.left_out import precision_of
 from zerorate_tools.loop.fit.noise import floor_dps, noise_of
@@ -240,6 +240,9 @@ def test_parts_carry_nine_tenths_of_what_curves_vary_by_in_ten_or_fewer_forms():
     assert tables.T @ tables == pytest.approx(np.diag(most[:fewest][::-1]), abs=1e-9)
     assert whole @ tables == pytest.approx(tables * most[:fewest][::-1], abs=1e-9)
     several = parts(Term("a", 0.0, 1.0))
+    points = np.array([t.table for t in of_any_form(several)])
+    assert np.linalg.matrix_rank(np.vstack([points, np.ones(9)])) == 9  # but for an offset
+    assert of_any_form(several[:1]) == several[:1]
     assert is_curve(several) and not is_curve(several[:1]) and not is_curve([*several, A])
 
 

@@ -34,6 +34,14 @@ def parts(term: Term) -> tuple[Term, ...]:
     return tuple(replace(term, table=tuple(table.tolist())) for table in tables)
 
 
+def of_any_form(terms: Terms) -> Terms:
+    """Terms by which a curve is looked for, as those of any form at the points of the board."""
+    if not is_curve(terms):
+        return terms
+    forms = np.eye(TABLE_POINTS)[1:]
+    return tuple(replace(terms[0], table=tuple(form.tolist())) for form in forms)
+
+
 def is_curve(terms: Terms) -> bool:
     """Whether terms are the parts of one curve that is still to be told."""
     return len(terms) > 1 and all(t.table for t in terms)

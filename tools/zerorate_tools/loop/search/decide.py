@@ -8,6 +8,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from ...model.term import Terms
+from ..fit.free_curve import of_any_form
 from ..fit.left_out import gains
 from ..fit.noise import NATS
 from ..fit.single import PiecesByLine
@@ -70,7 +71,8 @@ def decide(regression, nuisances, candidate, ratio: float, tried: float, pool) -
     p = family_p(ratio, dof, tried)
     if p > level:
         return Decision(False, p, ratio, reason="not significant")
-    null = null_ratios(regression, nuisances, candidate.terms, pool)
+    # what a curve's few parts leave of it must not pass for noise
+    null = null_ratios(regression, nuisances, of_any_form(candidate.terms), pool)
     p, d = min(1.0, null.survival(ratio, len(candidate.terms)) * tried), null.inflation
     if p > level:
         reason = "no better than irrelevant channels on this noise"
