@@ -113,7 +113,7 @@ def log(outcome):
 
 @pytest.fixture(scope="module")
 def seen(log):
-    return moments([log], every_s=300.0)
+    return moments([log], None, 300.0)
 
 
 def test_the_last_moment_is_the_state_that_a_replay_ends_in(log, seen):
