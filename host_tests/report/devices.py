@@ -39,6 +39,6 @@ class Closed:
         self.folder, self.logs = folder, logs
         found, self.scales = load(logs), open_recording(logs[0]).scales
         model = model_of(found, self.scales)
-        self.analysis = run_kernels(found, logs, model, folder / "corrected.parquet")
+        self.analysis = run_kernels(found, logs, model, folder / "corrected.parquet", False)
         write_model(model, folder)
         self.result = json.loads(json.dumps(report(self.analysis), default=as_json))

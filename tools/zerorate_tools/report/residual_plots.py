@@ -13,7 +13,6 @@ from ..loop.fit.noise import noise_of
 from ..loop.fit.regression import predicted
 from ..loop.read.sessions import Session
 from ..loop.verify.analysis import Analysis
-from ..loop.verify.judge import scored
 from .plot import ZERO, Line, Numbers, Panel, Plot, Series, panels_of_axes, thinned
 
 _LEAST = 9
@@ -230,8 +229,9 @@ def trained_residuals(analysis: Analysis) -> list[tuple[Session, Numbers]]:
     terms = [*analysis.selection.straight, *analysis.selection.terms]
     out = []
     for session in analysis.train:
-        model = predicted(terms, analysis.coefficients, session)
-        out.append((session, _MDPS * scored(session, model, session)[0]))
+        left = session.rate_dps - predicted(terms, analysis.coefficients, session)
+        left = np.where(session.available[:, None], left, np.nan)
+        out.append((session, _MDPS * (left - np.nanmean(left, axis=0))))
     return out
 
 

@@ -128,16 +128,12 @@ def residuals(selection: Selection, holdout: list[Session], effects: bool = True
     return [scored(s, predicted(terms, coefficients, s)) for s in holdout]
 
 
-def scored(session: Session, model: np.ndarray, fitted: Session | None = None):
+def scored(session: Session, model: np.ndarray):
     """Residual (n, 3) with the turn-on offset taken, and that offset (3,).
 
-    The offset is that of the session's first still minute, which is not scored; or, where another
-    part of the same power-on was fitted, the mean of that part.
+    The offset is that of the session's first still minute, which is not scored.
     """
     residual = np.where(session.available[:, None], session.rate_dps - model, np.nan)
-    if fitted is not None:
-        offset = (fitted.rate_dps - model)[fitted.available].mean(axis=0)
-        return residual - offset, offset
     first = session.first_still
     offset = residual[first].mean(axis=0)
     residual = residual - offset

@@ -48,7 +48,7 @@ def run_kernels(
     logs: Sequence[str | PathLike[str]],
     model: Model,
     out: str | PathLike[str],
-    online: bool = False,
+    online: bool,
     advance: Callable[[float], None] = lambda n: None,
 ) -> Analysis:
     """The analysis judged by the firmware's own kernels; corrected.parquet is written to `out`.
@@ -132,7 +132,7 @@ def _measured(analysis: Analysis, logs, scales: Scales, selection: Selection) ->
     other = deployable(with_selection(trial, selection), scales)
     with TemporaryDirectory() as scratch:
         out = Path(scratch) / "corrected.parquet"
-        measured = run_kernels(other, logs, model_of(other, scales), out).measured
+        measured = run_kernels(other, logs, model_of(other, scales), out, online=False).measured
     assert measured is not None, "it was just measured"
     return measured
 
