@@ -560,6 +560,8 @@ def test_confidence_is_tentative_with_few_power_ons_beside_earth_and_for_time_wi
     assert time.confidence(0) == "confirmed" and not time.may_be_heat(0)
     blind = replace(time, sessions=[replace(warm[0], sources={})])
     assert blind.may_be_heat(0) and blind.confidence(0) == "tentative" and blind.single
+    for some in ([warm[0], *blind.sessions], [*blind.sessions, warm[0]]):  # one cannot tell
+        assert replace(time, sessions=some).may_be_heat(0)
     volts = replace(blind, selection=sure.selection)
     assert not volts.may_be_heat(0) and volts.confidence(0) == "confirmed"
     doubtful = replace(sure, judgement=judgement([1, 1, 1], [2.0] * 3, [9.0]))

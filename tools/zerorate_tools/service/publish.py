@@ -129,7 +129,7 @@ class UnixSocket:
         if path.is_socket():
             if _answers(path):
                 raise InFile(path, "a service answers there", do="end it, or name another socket")
-            path.unlink()  # of a service that was killed
+            path.unlink(missing_ok=True)  # of a service that was killed
         self._server = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         try:
             self._server.bind(os.fspath(path))
@@ -181,7 +181,7 @@ def _answers(path: Path) -> bool:
         caller.setblocking(False)
         try:
             caller.connect(os.fspath(path))
-        except ConnectionRefusedError:
+        except (ConnectionRefusedError, FileNotFoundError):  # it may end just now
             return False
         except BlockingIOError:
             pass

@@ -17,7 +17,7 @@ from ..read.blocks import can_be_bridged
 from . import noise
 
 #: Columns above which they are tried once, as surrogates are, and not kept whitened; what is kept.
-_FEW, _MOST_KEPT_BYTES = 64, 100_663_296
+_FEW, _MOST_KEPT_BYTES = 64, 100_000_000
 
 
 class Whitener:

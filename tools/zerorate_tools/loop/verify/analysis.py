@@ -16,7 +16,7 @@ from ..motion.scales_and_timing import InMotion, slots_of
 from ..read.earth import ROTATION
 from ..read.gate import GateReport
 from ..read.lines import Line
-from ..read.sessions import Session
+from ..read.sessions import Session, common_sources
 from ..search.selection import Selection
 from .courses import Courses
 from .judge import Judgement, judge
@@ -70,7 +70,7 @@ class Analysis:
 
     def may_be_heat(self, i: int) -> bool:
         """Whether the i-th effect follows time alone, and no temperature tells it from warming."""
-        blind = all("temp" not in s.sources for s in self.sessions)
+        blind = "temp" not in common_sources(self.sessions)
         return blind and not set(self.selection.found[i].candidate.sources) - {"time"}
 
 
