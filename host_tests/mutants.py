@@ -146,7 +146,9 @@ AREAS = {
     ),
     "search": (
         [_TOOLS + "loop/search/"],
-        ["loop/test_search_by_hand.py", "loop/test_steps_by_hand.py", "loop/test_select_by_hand.py"]
+        ["loop/test_" + name for name in (
+            "search_by_hand.py", "steps_by_hand.py", "select_by_hand.py", "decide.py",
+            "drift_test.py")]
         + [_FIGURES + f"[{whole}]" for whole in ("steps found", "searched one", "searched two")],
     ),
     "verify": (

@@ -5,6 +5,7 @@ from zerorate_bench.loop.simulated import simulate
 from zerorate_tools.closing import close, load
 from zerorate_tools.recordings import Recording
 
+from . import dense
 from .power_ons import MPU, recording, written
 
 
@@ -30,3 +31,20 @@ def closing(tmp_path):
         return load(written(tmp_path, made))
 
     return run
+
+
+@pytest.fixture
+def sessions():
+    """Three, of noise alone."""
+    return [dense.made(seed, 17 + 3 * seed) for seed in (1, 2, 3)]
+
+
+@pytest.fixture
+def answers(monkeypatch):
+    """answers(module, name=value, ...): its functions give these values, whatever is asked."""
+
+    def answer(of, **values):
+        for name, value in values.items():
+            monkeypatch.setattr(of, name, lambda *asked, value=value: value)
+
+    return answer

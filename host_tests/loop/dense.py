@@ -3,7 +3,7 @@
 Nothing here uses the loop's own algebra: no transform, no cross products, no profiled axes.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
@@ -28,6 +28,18 @@ def made(seed, blocks, gap=(), scale=1.0, names=SOURCES):
     weight = np.ones(blocks)
     rate[list(gap)], weight[list(gap)] = np.nan, 0.0
     return Session(f"s{seed}", 20.0, 1, rate, weight, sources)
+
+
+def white(seed, blocks, **sources):
+    """The same, its rates of white noise alone."""
+    session = made(seed, blocks)
+    session.rate_dps[:] = np.random.default_rng(100 + seed).normal(size=(blocks, 3))
+    return replace(session, sources={**session.sources, **sources})
+
+
+def following(session, source="a", dps=3.0):
+    """The session whose bias follows a source."""
+    return replace(session, rate_dps=session.rate_dps + dps * session.sources[source][:, None])
 
 
 def spectrum(shape, blocks):

@@ -7,9 +7,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from scipy.optimize import brentq
-from scipy.stats import chi2, f
+from scipy.stats import chi2
 from zerorate_tools.loop.fit.free_curve import draw, parts
-from zerorate_tools.loop.fit.left_out import gains
 from zerorate_tools.loop.fit.regression import Regression
 from zerorate_tools.loop.read.earth import Earth
 from zerorate_tools.loop.read.lines import Line, Spectrum
@@ -18,7 +17,6 @@ from zerorate_tools.loop.search import (
     catalogue,
     curve,
     decide,
-    drift_test,
     hysteresis,
     likely_hysteresis,
     naming,
@@ -26,209 +24,16 @@ from zerorate_tools.loop.search import (
     refine,
     step_places,
 )
-from zerorate_tools.loop.search.catalogue import MARGIN, Candidate, candidates, ranges, varies
+from zerorate_tools.loop.search.catalogue import MARGIN, candidates, ranges, varies
 from zerorate_tools.loop.search.examine import cancels
-from zerorate_tools.loop.search.multiple_testing import MultipleTesting
 from zerorate_tools.loop.search.selection import Found, Selection, fits_in_slots
 from zerorate_tools.model.term import Term, play
 
 from . import dense
 from .dense import A, B, C, D
+from .selections import candidate
 
 VOLTS, TEMP = Term("vdd_mv", 4900.0, 5100.0, 5000.0), Term("temp", 10.0, 40.0, 25.0)
-
-
-def candidate(*terms, kind="vibration", family="catalogue", refine=()):
-    return Candidate(kind, terms, family, refine)
-
-
-@pytest.fixture
-def sessions():
-    return [dense.made(1, 20), dense.made(2, 23), dense.made(3, 26)]
-
-
-def changed(s, name="a", by=3.0):
-    return replace(s, rate_dps=s.rate_dps + by * s.sources[name][:, None])
-
-
-# --- what must be paid ---
-
-
-def test_a_family_s_chance_is_that_of_one_times_all_that_were_tried():
-    assert decide.family_p(20.0, 3, 5.0) == pytest.approx(5 * chi2.sf(20.0, 3))
-    assert decide.family_p(1.0, 3, 5.0) == 1.0
-    for family, level in (("catalogue", 2.5e-3), ("generic", 5e-5), ("step", 2e-3)):
-        least = decide.smallest_ratio(family, 3, 7.0)
-        assert decide.family_p(least, 3, 7.0) == pytest.approx(level)
-
-
-def test_as_many_tests_as_their_columns_are_apart():
-    assert decide.effective(np.zeros((5, 3))) == decide.effective(np.ones((5, 1))) == 1.0
-    assert decide.effective(np.eye(5)[:, :3] * [1.0, 9.0, 0.1]) == pytest.approx(3.0)
-    two = np.column_stack([[1.0, 0.0, 0.0], [0.6, 0.8, 0.0]])
-    values = np.array([1.6, 0.4])
-    assert decide.effective(two) == pytest.approx(np.sqrt(values).sum() ** 2 / 2)
-    with_none = np.column_stack([two, np.zeros(3)])
-    assert decide.effective(with_none) == pytest.approx(decide.effective(two))
-
-
-def test_every_lock_must_open(sessions, monkeypatch):
-    null = SimpleNamespace(survival=lambda ratio, columns: p_value * columns, inflation=1.5)
-    monkeypatch.setattr(decide, "null_ratios", lambda *a: null)
-    regression = Regression(sessions)
-    one = candidate(A)
-    p_value = 1e-6
-    low = decide.decide(regression, [], one, 5.0, 10.0, [B])
-    assert (low.accepted, low.reason, low.inflation) == (False, "not significant", 1.0)
-    assert low.p_value == decide.family_p(5.0, 3, 10.0) and low.ratio == 5.0
-    p_value = 1e-2
-    noisy = decide.decide(regression, [], one, 40.0, 2.0, [B])
-    assert not noisy.accepted and noisy.p_value == 0.02 and noisy.inflation == 1.5
-    assert "irrelevant channels" in noisy.reason
-    p_value = 1e-6
-    monkeypatch.setattr(decide, "gains", lambda *a: np.array(nats))
-    nats = [5.0, 5.0, 5.0]
-    good = decide.decide(regression, [], one, 40.0, 2.0, [B])
-    assert good.accepted and good.reason == "" and good.p_value == pytest.approx(2e-6)
-    assert good.session_gains.tolist() == nats
-    nats = [5.0, -5.0, -5.0]
-    bad = decide.decide(regression, [], one, 40.0, 2.0, [B])
-    assert not bad.accepted and "sessions left out" in bad.reason
-    alone = decide.decide(Regression(sessions[:1]), [], one, 40.0, 2.0, [B])
-    assert alone.accepted and len(alone.session_gains) == 0
-    # of two columns chance has six degrees of freedom
-    two = decide.decide(regression, [], candidate(A, B), 5.0, 1.0, [B])
-    assert two.p_value == decide.family_p(5.0, 6, 1.0)
-    assert decide.decide(regression, [], one, 80.0, 1e9, [B]).p_value <= 1.0
-
-
-def pool():
-    return [
-        *(candidate(t, kind="thermal-lag") for t in (A, B)),
-        candidate(C, kind="time-drift"),
-        candidate(D, kind="vibration"),
-        candidate(A, B, kind="linear-acceleration"),
-        candidate(B, kind="channel", family="generic"),
-    ]
-
-
-def test_the_shares_of_a_family_are_by_weight_and_add_up(sessions):
-    testing = MultipleTesting(Regression(sessions), pool(), (), (), False)
-    shares = {c.kind: testing.grid(c.kind) / testing.tried(c) for c in pool()}
-    assert shares["time-drift"] == pytest.approx(6 / 9)
-    for kind in ("vibration", "thermal-lag", "linear-acceleration"):
-        assert shares[kind] == pytest.approx(1 / 9)
-    assert shares["channel"] == 1.0
-    assert testing.grid("vibration") == testing.grid("linear-acceleration") == 1.0
-
-
-def test_what_follows_time_is_asked_other_questions_where_it_can_come_again(sessions):
-    regression = Regression(sessions)
-    drift = candidate(Term("time"), kind="time-drift")
-    every = [*pool(), drift]
-    for power_ons in (True, False):
-        testing = MultipleTesting(regression, every, (), (), power_ons)
-        assert testing.is_by_time(drift) is power_ons and not testing.is_by_time(every[3])
-        tried = testing.tried(drift)
-        if power_ons:
-            assert testing.least_ratio(drift) == pytest.approx(chi2.isf(0.01, 3))
-            assert testing.needed(drift) == drift_test.smallest_square(tried, 3, 3)
-        else:
-            assert testing.least_ratio(drift) == decide.smallest_ratio("catalogue", 3, tried)
-            assert testing.needed(drift) == testing.least_ratio(drift)
-    both = every[4]
-    assert testing.least_ratio(both) == decide.smallest_ratio("catalogue", 6, testing.tried(both))
-    assert testing.needed(both) == decide.smallest_ratio("catalogue", 3, testing.tried(both))
-
-
-# --- what follows time ---
-
-
-def test_chances_taken_together_are_fishers():
-    assert drift_test.together(0.2) == pytest.approx(0.2)
-    assert drift_test.together(0.2, 0.3) == pytest.approx(chi2.sf(-2 * np.log(0.06), 4))
-    assert 0 < drift_test.together(0.0, 1.0) < 1e-290
-
-
-@pytest.mark.parametrize(
-    ("fields", "follows"),
-    [
-        ({"source": "time"}, True),
-        ({"source": "one", "decay_s": 9.0}, True),
-        ({"source": "a"}, False),
-        ({"source": "time", "second": "a"}, False),
-    ],
-)
-def test_what_follows_the_clock_alone(fields, follows):
-    assert drift_test.follows_time(candidate(Term(**fields))) is follows
-    assert not drift_test.follows_time(candidate(Term(**fields), A))
-
-
-def test_a_mean_and_a_spread_are_of_the_sessions_own_coefficients(sessions):
-    scale = np.array([[0.5, 1.0, 1.0], [1.0, 1.0, 2.0], [2.0, 1.0, 0.5]])
-    regression = Regression([changed(s) for s in sessions])
-    regression.scale = scale
-    mean, spread = drift_test.repeats(regression, [B], [A])
-    base = regression.fit([B, A]).base
-    expected = np.zeros(2)
-    for a, colour in enumerate(base.best):
-        p = dense.problem(regression.sessions, [B, A], scale[:, a])
-        to = np.linalg.inv(p.v[colour])
-        z, x, y = p.x[:, :1], p.x[:, 1], p.y[:, a]
-        take = np.linalg.solve(z.T @ to @ z, z.T @ to)
-        x, y = x - z @ (take @ x), y - z @ (take @ y)
-        along = np.array([x[r] @ to[r, r] @ y[r] for r in p.rows])
-        size = np.array([x[r] @ to[r, r] @ x[r] for r in p.rows])
-        common = along.sum() / size.sum()
-        expected += (
-            np.array([common**2 * size.sum(), ((along - common * size) ** 2 / size).sum()])
-            / base.variance[a]
-        )
-    assert (mean, spread) == pytest.approx(tuple(expected), rel=1e-5)
-    ratio = drift_test.ratio_with_common_colour(regression, [B], [A])
-    free = 6
-    between = (spread + 4) / (free + 4)
-    both = chi2.sf(ratio, 3), f.sf(mean / 3 / between, 3, free + 4)
-    told = drift_test.chance(regression, [B], [A])
-    expected = np.log(chi2.sf(-2 * np.log(both).sum(), 4))
-    assert np.log(told) == pytest.approx(expected) and -600 < expected < 0
-    decision = drift_test.considered(regression, [B], candidate(A), 50.0, 2.0)
-    assert decision.p_value == pytest.approx(2 * told) and decision.tried == 2.0
-    assert (decision.accepted, decision.reason, decision.ratio) == (True, "", 50.0)
-    assert decision.inflation == 1.0
-    assert decision.session_gains == pytest.approx(gains(regression, [B], [A]))
-    dear = drift_test.considered(regression, [B], candidate(A), 50.0, 1.01e-3 / told)
-    assert not dear.accepted and "walk" in dear.reason
-    assert drift_test.considered(regression, [B], candidate(A), 50.0, 9.0 / told).p_value == 1.0
-    for tried, again in ((0.99e-6 / told, True), (1.01e-6 / told, False)):
-        assert drift_test.comes_again(regression, [B], candidate(A), tried) is again
-
-
-def test_a_colour_that_three_axes_share_costs_what_student_s_t_says():
-    low = np.array([0.0, 1.0, 2.0])
-    likely = np.array([[0.0, -50.0, -50.0], [-50.0, -50.0, -1.0]])
-    costs = []
-    for common in np.linspace(0.0, 2.0, 31):
-        off = (low - common) / 0.7
-        costs.append((likely - 2.0 * np.log1p(off**2 / 3)).max(axis=1).sum())
-    assert drift_test.common_colour(likely, low) == pytest.approx(max(costs))
-    spectrum = np.exp(np.array([[4.0, 2.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0]]))
-    assert drift_test.lowness(spectrum) == pytest.approx([3.0 - 1.5, 0.0])
-
-
-def test_the_smallest_square_passes_now_and_with_one_power_on_more():
-    for tried, n in ((1.0, 2), (20.0, 3)):
-        squares = []
-        for level, count in ((1e-3, n), (1e-6, n + 1)):
-            free = 3 * (count - 1) + 4
-
-            def over(x, free=free, level=level, tried=tried):
-                each = chi2.sf(x, 3), f.sf(x / 3, 3, free)
-                return np.log(drift_test.together(*each) * tried / level)
-
-            squares.append(brentq(over, 1.0, 500.0))
-        least = drift_test.smallest_square(tried, 3, n)
-        assert least == pytest.approx(max(squares[0], squares[1] * n / (n + 1)))
 
 
 # --- what could have been shown, and the plain error ---
@@ -750,7 +555,7 @@ def test_a_matrix_is_named_by_where_most_of_it_is():
 def test_groups_alike_share_the_posterior_by_the_levels_of_their_families(sessions):
     for s in sessions:
         s.sources["twin"] = s.sources["a"] * 1.0001
-    regression = Regression([changed(s) for s in sessions])
+    regression = Regression([dense.following(s) for s in sessions])
     lagged = candidate(Term("a", lag_s=0.1, lag_mode="lag"), kind="channel-lag", family="generic")
     plain = candidate(Term("twin"), kind="channel", family="generic")
     catalogued = candidate(A, kind="vibration")
@@ -776,7 +581,7 @@ def test_a_curve_that_was_drawn_pays_for_its_form():
 
 
 def test_the_likeliest_is_named_with_what_else_it_may_be(sessions):
-    regression = Regression([changed(s) for s in sessions])
+    regression = Regression([dense.following(s) for s in sessions])
     lagged = candidate(Term("a", lag_s=0.1, lag_mode="lag"), kind="channel-lag", family="generic")
     pool_ = [candidate(A, kind="vibration"), candidate(B, kind="supply-voltage")]
     decision = decide.Decision(True, 0.0, 0.0, 1.0, np.zeros(1))

@@ -1,0 +1,100 @@
+"""What a candidate must reach: every lock must open, and each pays for all that are tried."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from scipy.stats import chi2
+from zerorate_tools.loop.fit.regression import Regression
+from zerorate_tools.loop.search import decide, drift_test
+from zerorate_tools.loop.search.multiple_testing import MultipleTesting
+from zerorate_tools.model.term import Term
+
+from .dense import A, B, C, D
+from .selections import candidate
+
+
+@pytest.mark.parametrize(
+    ("family", "level"), [("catalogue", 2.5e-3), ("generic", 5e-5), ("step", 2e-3)]
+)
+def test_a_family_s_chance_is_that_of_one_times_all_that_were_tried(family, level):
+    assert decide.family_p(20.0, 3, 5.0) == pytest.approx(5 * chi2.sf(20.0, 3))
+    assert decide.family_p(1.0, 3, 5.0) == 1.0
+    least = decide.smallest_ratio(family, 3, 7.0)
+    assert decide.family_p(least, 3, 7.0) == pytest.approx(level)
+
+
+@pytest.mark.parametrize(
+    ("columns", "tests"),
+    [
+        (np.zeros((5, 3)), 1.0),
+        (np.ones((5, 1)), 1.0),
+        (np.eye(5)[:, :3] * [1.0, 9.0, 0.1], 3.0),
+        (np.array([[1.0, 0.6, 0.0], [0.0, 0.8, 0.0]]), np.sqrt([1.6, 0.4]).sum() ** 2 / 2),
+    ],
+)
+def test_columns_count_as_many_tests_as_they_are_apart(columns, tests):
+    assert decide.effective(columns) == pytest.approx(tests)
+
+
+BY_NOISE = "no better than irrelevant channels on this noise"
+NOT_AGAIN = "does not predict the sessions left out"
+
+
+@pytest.mark.parametrize(
+    ("terms", "ratio", "tried", "of_noise", "nats", "p_value", "inflation", "reason"),
+    [
+        ((A,), 12.0, 10.0, 0.0, 9.0, 10 * chi2.sf(12.0, 3), 1.0, "not significant"),
+        ((A, B), 5.0, 1.0, 0.0, 9.0, chi2.sf(5.0, 6), 1.0, "not significant"),
+        ((A,), 40.0, 2.0, 1e-2, 9.0, 0.02, 1.5, BY_NOISE),
+        ((A,), 80.0, 1e9, 1e-6, 9.0, 1.0, 1.5, BY_NOISE),
+        ((A, B), 40.0, 2.0, 1e-6, 3.3, 4e-6, 1.5, ""),
+        ((A,), 40.0, 2.0, 1e-6, 3.0, 2e-6, 1.5, NOT_AGAIN),
+    ],
+)
+def test_every_lock_must_open(
+    sessions, answers, terms, ratio, tried, of_noise, nats, p_value, inflation, reason
+):
+    null = SimpleNamespace(survival=lambda ratio, columns: of_noise * columns, inflation=1.5)
+    answers(decide, null_ratios=null, gains=np.full(3, nats / 3))
+    told = decide.decide(Regression(sessions), [], candidate(*terms), ratio, tried, [B])
+    assert (told.accepted, told.reason) == (not reason, reason)
+    assert (told.ratio, told.inflation) == (ratio, inflation)
+    assert told.p_value == pytest.approx(p_value)
+    assert told.session_gains.tolist() == [nats / 3] * (3 * (reason in ("", NOT_AGAIN)))
+
+
+def test_one_recording_has_no_other_to_predict_it(sessions, answers):
+    answers(decide, null_ratios=SimpleNamespace(survival=lambda *of: 1e-6, inflation=1.0))
+    told = decide.decide(Regression(sessions[:1]), [], candidate(A), 40.0, 2.0, [B])
+    assert told.accepted and len(told.session_gains) == 0
+
+
+DRIFT, BOTH = candidate(Term("time"), kind="time-drift"), candidate(A, B, kind="two")
+POOL = [
+    *(candidate(t, kind="thermal-lag") for t in (A, B)),
+    *(candidate(C, kind="time-drift"), candidate(D), BOTH),
+    candidate(B, kind="channel", family="generic"),
+]
+
+
+def test_the_shares_of_a_family_are_by_weight_and_add_up(sessions):
+    testing = MultipleTesting(Regression(sessions), POOL, (), (), False)
+    shares = {c.kind: testing.grid(c.kind) / testing.tried(c) for c in POOL}
+    assert shares == pytest.approx(
+        {"time-drift": 6 / 9, "vibration": 1 / 9, "thermal-lag": 1 / 9, "two": 1 / 9, "channel": 1}
+    )
+    assert testing.grid("vibration") == testing.grid("two") == 1.0
+
+
+@pytest.mark.parametrize("power_ons", [True, False])
+def test_what_follows_time_is_asked_other_questions_where_it_can_come_again(sessions, power_ons):
+    testing = MultipleTesting(Regression(sessions), [*POOL, DRIFT], (), (), power_ons)
+    assert testing.is_by_time(DRIFT) is power_ons and not testing.is_by_time(BOTH)
+    tried, of_two = testing.tried(DRIFT), testing.tried(BOTH)
+    one = decide.smallest_ratio("catalogue", 3, tried)
+    again = chi2.isf(0.01, 3), drift_test.smallest_square(tried, 3, 3)
+    told = testing.least_ratio(DRIFT), testing.needed(DRIFT)
+    assert told == pytest.approx(again if power_ons else (one, one))
+    assert testing.least_ratio(BOTH) == decide.smallest_ratio("catalogue", 6, of_two)
+    assert testing.needed(BOTH) == decide.smallest_ratio("catalogue", 3, of_two)
