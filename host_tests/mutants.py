@@ -147,8 +147,9 @@ AREAS = {
     "search": (
         [_TOOLS + "loop/search/"],
         ["loop/test_" + name for name in (
-            "search_by_hand.py", "steps_by_hand.py", "select_by_hand.py", "decide.py",
-            "drift_test.py")]
+            "catalogue.py", "curve.py", "decide.py", "drift_test.py", "likely_hysteresis.py",
+            "naming.py", "periodic.py", "select_by_hand.py", "selection.py", "steps_first.py",
+            "steps_listed.py")]
         + [_FIGURES + f"[{whole}]" for whole in ("steps found", "searched one", "searched two")],
     ),
     "verify": (

@@ -2,20 +2,42 @@
 
 import numpy as np
 from zerorate_tools.loop.fit.regression import Regression
+from zerorate_tools.loop.read.sessions import Session
 from zerorate_tools.loop.search.catalogue import Candidate
 from zerorate_tools.loop.search.decide import Decision
 from zerorate_tools.loop.search.selection import Found, Selection
+from zerorate_tools.loop.search.steps import Step
 
 
 def candidate(*terms, kind="vibration", family="catalogue", refine=()):
     return Candidate(kind, terms, family, refine)
 
 
-def found(*terms, kind="vibration", accepted=True, p=0.0, gains=(0.0,), **more):
+def found(*terms, kind="vibration", family="catalogue", accepted=True, p=0.0, gains=(0.0,), **more):
     """An effect; gains: nats of each session or piece left out."""
     decision = Decision(accepted, p, 0.0, session_gains=np.array(gains))
-    return Found(candidate(*terms, kind=kind), decision, **more)
+    return Found(candidate(*terms, kind=kind, family=family), decision, **more)
 
 
 def selected(sessions, *effects, line=(), **more):
     return Selection([*effects], [], 0, Regression(sessions), line, (), [], {}, **more)
+
+
+def step(block, dps=(1.0, 1.0, 1.0), deviation_dps=(1.0, 1.0, 1.0), session=0, share=0.0):
+    return Step(session, block, np.array(dps), 9.0, 0.0, np.array(deviation_dps), share=share)
+
+
+def warm(blocks=50, seed=0, **more):
+    """A session that warms by ten degrees, with a supply and a load beside it."""
+    rng = np.random.default_rng(seed)
+    sources = {
+        "temp": np.linspace(20.0, 30.0, blocks),
+        "acc_x": np.linspace(-0.2, 0.3, blocks),
+        "acc_y": np.zeros(blocks),
+        "acc_z": np.ones(blocks),
+        "vib": np.full(blocks, 0.1),
+        "vdd_mv": 5000 + 20 * rng.normal(size=blocks),
+        "load": rng.normal(size=blocks),
+        **more,
+    }
+    return Session(f"w{seed}", 20.0, 1, rng.normal(size=(blocks, 3)), np.ones(blocks), sources)

@@ -1,0 +1,136 @@
+"""What a search comes to: its effects refined, with less in it, and in the board's slots."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+from zerorate_tools.loop.fit.free_curve import draw, parts
+from zerorate_tools.loop.fit.regression import Regression
+from zerorate_tools.loop.search import refine
+from zerorate_tools.loop.search.catalogue import MARGIN
+from zerorate_tools.loop.search.examine import cancels
+from zerorate_tools.loop.search.selection import Selection, fits_in_slots
+from zerorate_tools.model.term import Term
+
+from . import dense
+from .dense import A, B
+from .selections import candidate, found
+
+LAG = Term("temp", lag_s=9.0, lag_mode="lag")
+PLAY = Term("temp", memory="play", width=1.0)
+TABLE = replace(LAG, table=(0.0,) * 9)
+PLAYS = [replace(PLAY, width=float(width)) for width in range(1, 8)]
+DELAYS = [replace(LAG, delay_s=float(delay)) for delay in (1, 2, 3)]
+PRODUCTS = [Term(f"c{k}", second=f"d{k}") for k in range(4)]
+
+
+@pytest.mark.parametrize(
+    ("terms", "taken", "fits"),
+    [
+        *(([LAG] * 8, 0, True), ([LAG] * 9, 0, False)),
+        *(([LAG] * 6, 2, True), ([LAG] * 6, 3, False)),
+        *((PLAYS[:6] + [LAG] * 8, 0, True), (PLAYS, 0, False)),
+        (PLAYS[:6] + [replace(p, power=2) for p in PLAYS[:6]], 0, True),
+        *((DELAYS[:2], 0, True), (DELAYS, 0, False)),
+        *(([TABLE] * 2, 0, True), ([TABLE] * 3, 0, False)),
+        *((PRODUCTS + [Term("time"), Term("one")], 0, True), (PRODUCTS + [Term("c9")], 0, False)),
+    ],
+)
+def test_what_the_board_has_room_for(terms, taken, fits):
+    assert fits_in_slots(terms, taken) is fits
+
+
+def test_a_selection_with_less_in_it():
+    slope = Term("temp", 10.0, 40.0, 25.0)
+    both, line = [found(A, B), found(slope)], (Term("temp"),)
+    whole = Selection(both, [], 0, None, line, (), [], {})
+    assert whole.terms == [A, B, slope] and whole.straight == ()
+    assert whole.first(1).straight == line and whole.first(1).found == both[:1]
+    assert whole.without(0).found == both[1:] and whole.without(1).found == both[:1]
+    less = whole.without_axes(0, (True, False, False), "worse")
+    assert less.found[0].axes == (False, True, True) and less.found[1] is both[1]
+    assert less.applied.tolist() == [[0, 1, 1], [0, 1, 1], [1, 1, 1]]
+    gone = less.without_axes(0, (False, True, True), "worse")
+    assert gone.found == both[1:] and gone.withdrawn == [("vibration", "worse")]
+    assert both[0].axes == (True, True, True) and whole.first(0).applied.shape == (0, 3)
+    alone = replace(whole, alone=True)
+    assert alone.stands_alone and not replace(alone, judged_again=True).stands_alone
+    assert not whole.stands_alone
+
+
+def test_where_any_curve_will_do_it_is_told_by_the_recordings():
+    regression, same = Regression([dense.made(seed, 100) for seed in (1, 2)]), candidate(A)
+    assert refine.drawn(regression, [], same) is same
+    curve = Term("a", -4.0, 4.0)
+    for some in (candidate(*parts(curve), kind="x"), candidate(replace(curve, table=(0.5,) * 9))):
+        told = refine.drawn(regression, [B], some)
+        assert told.terms == (draw(regression, [B], some.terms[0])[0],) and told.kind == some.kind
+
+
+def refined(term, name, sign):
+    """Where a field of a term ends up that gains the more the larger it is, or the smaller."""
+    told = SimpleNamespace(
+        gains=lambda terms, trial: np.array([[sign * getattr(trial[0][0], name)]]),
+        forget=lambda term: None,
+    )
+    best = refine.refined(told, [], candidate(term, refine=(name,)))
+    return getattr(best.terms[0], name)
+
+
+@pytest.mark.parametrize(
+    ("name", "least", "most"),
+    [
+        *(("lag_s", 8.0, 7200.0), ("delay_s", 1.0, 1200.0), ("decay_s", 40.0, 14400.0)),
+        ("width", 0.3, 30.0),
+    ],
+)
+def test_what_is_refined_stays_within_what_the_firmware_and_a_recording_can_hold(name, least, most):
+    for sign, start, end in ((-1, 1.5 * least, least), (1, most / 1.5, most)):
+        told = refined(Term("a", **{name: start}), name, sign)
+        assert told == pytest.approx(end, rel=0.03)
+        assert least * 0.999 <= told <= most * 1.001
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize("name", ["knot", "centre", "second_centre"])
+def test_a_place_is_refined_by_a_fifth_of_the_range_seen_at_most(name, sign):
+    both = Term("a", 2.0, 12.0, 7.0, knot=7.0, second="b")
+    both = replace(both, second_lo=2.0, second_hi=12.0, second_centre=7.0)
+    seen = 10.0 / (1.0 + 2.0 * MARGIN)
+    assert refined(both, name, sign) == pytest.approx(7.0 + sign * 0.2 * seen, abs=0.03 * seen)
+
+
+@pytest.fixture
+def alike():
+    """alike(apart): sessions with two sources, the first so far from the second."""
+
+    def sources(apart):
+        made = [dense.made(1, 20, gap=(3,)), dense.made(2, 23), dense.made(3, 26)]
+        for s in made:
+            s.sources["b"] = s.sources["a"] + apart * s.sources["c"]
+        return made
+
+    return sources
+
+
+def larger(sessions, beside):
+    """Squares of what the first source adds by least squares, over those of the error without."""
+    rows = []
+    for s in sessions:
+        whole = np.column_stack([s.sources["a"], s.sources["b"], s.rate_dps])[s.available]
+        rows.append(whole - whole.mean(axis=0))
+    a, b, *y = np.vstack(rows).T
+    y = np.column_stack(y)
+    x = np.column_stack([a, b] if beside else [a])
+    size = np.linalg.lstsq(x, y, rcond=None)[0][0]
+    without = y - np.outer(b, b @ y) / (b @ b) if beside else y
+    return (np.outer(a, size) ** 2).sum() / (without**2).sum()
+
+
+def test_an_effect_of_twice_the_error_without_it_only_stands_against_another(alike):
+    just = brentq(lambda apart: larger(alike(apart), True) - 4.0, 0.01, 1.0)
+    assert cancels(alike(0.999 * just), [B], [A])
+    assert not cancels(alike(1.001 * just), [B], [A])
+    assert larger(alike(1.0), False) < 4 and not cancels(alike(1.0), [], [A])

@@ -1,0 +1,144 @@
+"""Which steps are taken out of a session, when they were, and what else was seen then."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from scipy.stats import chi2
+from zerorate_tools.loop.fit.regression import Regression
+from zerorate_tools.loop.search import steps_first
+from zerorate_tools.model.term import Term
+
+from . import dense
+from .dense import A
+from .selections import step
+
+BLOCKS, TICKS = 60, np.arange(120)
+COLD = Term("temp", centre=20.0)
+
+
+@pytest.mark.parametrize(
+    ("term", "per_degc"),
+    [
+        *((COLD, 1.0), (replace(COLD, power=2), 10.0), (replace(COLD, power=3), 75.0), (A, 0.0)),
+        (replace(COLD, lag_s=10.0, lag_mode="lag", power=2), 10.0 * (1 - np.exp(-2.0)) / 2),
+        (replace(COLD, lag_s=10.0, lag_mode="rate"), (1 - np.exp(-2.0)) / 20.0),
+    ],
+)
+def test_a_jump_of_temperature_moves_a_term_by_its_slope_less_what_a_lag_forgets(term, per_degc):
+    assert steps_first._slope(term, 25.0, 20.0) == pytest.approx(per_degc)
+
+
+@pytest.mark.parametrize(
+    ("degc", "beside", "reading_degc", "explained"),
+    [
+        *((0.4, 0.99, 0.5, True), (-0.4, 0.99, 0.5, True), (0.4, 1.01, 0.5, False)),
+        *((0.4, 0.99, None, False), (0.5 + 0.99, 0.0, 0.5, True), (0.5 + 1.01, 0.0, 0.5, False)),
+        *((-0.5 - 0.99, 0.0, 0.5, True), (-0.5 - 1.01, 0.0, 0.5, False)),
+    ],
+)
+@pytest.mark.parametrize("block", [37, BLOCKS])
+def test_a_step_that_a_reading_of_the_thermometer_explains_is_none(
+    block, degc, beside, reading_degc, explained
+):
+    temp = 25 + 9 * np.sin(np.arange(BLOCKS) / 9)
+    session = replace(dense.white(4, BLOCKS, temp=temp), temp_step_degc=reading_degc)
+    session.rate_dps += np.outer(temp, [3.0, -2.0, 1.0])
+    regression, late = Regression([session]), {Term("temp", lag_s=45.0, lag_mode="lag"): 9.0}
+    line, bend = steps_first.bend_of(session)
+    with regression.shrinking(late):
+        own, squares, lagged = regression.fit([line, bend, *late]).coefficients
+    warm = temp[min(block, BLOCKS - 1)]
+    slope = own + 2 * (warm - temp.mean()) * squares
+    slope += lagged * 45.0 / 20.0 * (1 - np.exp(-20.0 / 45.0))
+    deviation = np.array([0.3, 0.2, 0.5])
+    deviation *= np.linalg.norm(slope / deviation) / np.sqrt(chi2.isf(1e-3, 2))  # of 1 degC
+    aside = np.array([1.0, 0.0, -slope[0] / deviation[0] / (slope[2] / deviation[2])])
+    aside *= deviation * np.sqrt(chi2.isf(1e-3, 2)) / np.linalg.norm(aside)
+    one = step(block, degc * slope + beside * aside, deviation)
+    assert steps_first._is_thermometers(regression, [line, bend], late, one) is explained
+    blind = Regression([dense.white(4, BLOCKS)])
+    assert not steps_first._is_thermometers(blind, [], {}, one)
+
+
+@pytest.mark.parametrize(
+    ("at", "seen"), [(90, True), (89, False), (129, True), (130, False), (1, False), (110, True)]
+)
+def test_a_knock_counts_within_ten_ticks_of_a_step(at, seen):
+    force = np.zeros(200)
+    force[at:] += 0.5
+    sources = {"acc_x": force, "acc_y": -force, "acc_z": np.ones(200)}
+    told, said = steps_first._by_accelerometer(SimpleNamespace(sources=sources), 100, 120)
+    assert (told, "0.71 g" in said) == ((at, True) if seen else (None, False))
+
+
+def in_ticks(known, jump, **sources):
+    """12 blocks of 10 ticks of 2 s, of which some are known; after a jump the bias is another."""
+    level = (TICKS >= jump)[:, None] * np.array([1.0, -1.0, 0.0])
+    ticks = np.where(known[:, None], level, np.nan)
+    session = dense.white(4, 12)
+    return replace(session, ticks_per_block=10, ticks_dps=ticks, sources=sources)
+
+
+KNOWN, GAP = TICKS >= 0, (TICKS < 60) | (TICKS > 66)
+STEP = step(6, (1.0, -1.0, 0.0), (0.1, 0.1, 1.0))
+
+
+@pytest.mark.parametrize(
+    ("known", "jump", "tick"),
+    [
+        (KNOWN, 63, 63.0),
+        *((KNOWN, 33, 41.0), (KNOWN, 80, 79.0)),  # two blocks off at most
+        (GAP, 63, 63.5),  # in the middle of what is not known
+        *((TICKS < 50, 99, 49.5), (TICKS > 59, 0, 60.5)),
+    ],
+)
+def test_a_step_is_in_the_middle_of_the_ticks_where_it_may_have_been(known, jump, tick):
+    other = np.outer(TICKS >= 30, [0.0, 5.0, 9.0])
+    session = in_ticks(known, jump)
+    session.ticks_dps += other
+    told = steps_first._timed(session, STEP, other)
+    assert (told.at_s, told.said) == (2.0 * tick, "")
+    assert steps_first._timed(replace(session, ticks_dps=None), STEP, other) is STEP
+
+
+# of what shakes within a tick, squares
+SHAKEN = np.where(TICKS == 64, 0.01, 0.0009)
+
+
+@pytest.mark.parametrize(
+    ("known", "force", "vib", "at_s", "seen"),
+    [
+        (GAP, (TICKS > 68) * 0.5, 0 * SHAKEN, 138.0, "0.87 g"),
+        (KNOWN, 0.0 * TICKS, SHAKEN, 128.0, "0.07 g"),
+    ],
+)
+def test_a_knock_within_its_ticks_has_the_step_s_moment(known, force, vib, at_s, seen):
+    session = in_ticks(known, 63, vib=vib, **{f"acc_{axis}": force for axis in "xyz"})
+    told = steps_first._timed(session, STEP, np.zeros((120, 3)))
+    assert told.at_s == at_s and seen in told.said
+
+
+@pytest.mark.parametrize(
+    ("second", "undone"),
+    [
+        *((step(32, [-0.1] * 3), True), (step(33, [-0.1] * 3, share=0.5), True)),
+        *((step(33, [-0.1] * 3, share=0.25), False), (step(32, [0.1] * 3), False)),
+        (step(32, [-0.1] * 3, session=1), False),
+    ],
+)
+def test_two_that_undo_each_other_within_two_blocks_are_a_disturbance(second, undone):
+    assert steps_first._undoes(step(31, share=0.5), second) is undone
+
+
+@pytest.mark.parametrize(
+    ("second", "sign", "listed"), [(31, 1, [2.0]), (31, -1, [1.0, -1.0]), (32, 1, [1.0, 1.0])]
+)
+def test_a_step_that_two_blocks_in_turn_show_is_one(answers, second, sign, listed):
+    one, two = step(30, deviation_dps=[0.3] * 3), step(second, [sign] * 3, [0.4] * 3)
+    answers(steps_first, hold_disturbed=None, steps_and_lags=([two, one], {}))
+    found = steps_first._steps(dense.white(4, BLOCKS), 1)
+    assert [s.size_dps.tolist() for s in found] == [[size] * 3 for size in listed]
+    assert found[0].block == 30
+    assert found[0].deviation_dps == pytest.approx([0.5 if len(listed) == 1 else 0.3] * 3)
