@@ -60,7 +60,7 @@ def closed(version):
     with written_together("out") as folder:
         write_recording(recording(version), folder / "corrected.parquet")
         write_model(model(version), folder)
-        closing._write_json(folder, {"version": version})
+        closing._written({"version": version}, folder)
         (folder / "plots").mkdir()
         (folder / "plots" / "a.png").write_text(f"picture {version}")
 

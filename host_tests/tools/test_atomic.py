@@ -16,7 +16,7 @@ from zerorate_tools.recordings import write_recording
 from zerorate_tools.recordings.atomic import all_written_together, written_beside, written_together
 
 from host_tests.tools.killed_recorders import MOST_S, trials
-from host_tests.tools.killed_writers import Trials
+from host_tests.tools.killed_writers import WRITERS, Trials
 
 from .test_recordings import a_recording
 
@@ -201,7 +201,15 @@ def test_a_recorder_killed_at_a_random_moment_loses_two_seconds_at_most():
     assert ends["run"] >= 8 and ends["recovered"] >= 2
 
 
-@pytest.mark.parametrize("name", ["CSV", "Parquet", "model", "simulate"])
+KILLED = ("CSV", "Parquet", "model", "simulate")
+
+
+@pytest.mark.parametrize("name", KILLED)
 def test_killed_at_each_rename_and_write_it_leaves_the_old_or_the_new_whole(tmp_path, name):
     done = Trials(name, tmp_path).all(sizes=3)
     assert done.tried >= 7 and not done.fallen
+
+
+@pytest.mark.parametrize("name", sorted(WRITERS.keys() - set(KILLED)))
+def test_every_other_writer_that_make_attacks_kills_writes(tmp_path, name):
+    assert Trials(name, tmp_path).changes
