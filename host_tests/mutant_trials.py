@@ -46,7 +46,7 @@ _FIXTURES_OF_OTHERS |= {"others", "s3", "gs"}  # clusters and stores, whose thre
 # Tests of what starts an interpreter: that is host code, which the mutant is in.
 _STARTERS = ("test_interpreters",)
 # Seconds of processor for the tests of one mutant: what lives longer has survived. And for all.
-_BUDGET_S, _LONG_S = 10, 4
+_BUDGET_S, _LONG_S = 20, 4
 _PATIENCE_S = 90
 _CRASHES = (signal.SIGSEGV, signal.SIGFPE, signal.SIGABRT, signal.SIGBUS, signal.SIGILL)
 # Packages whose modules stand in the repository.

@@ -39,7 +39,11 @@ SURVIVORS_AND_WHY = Path(__file__).with_name("mutants.toml")
 _SAME = re.compile(r"^\s*(from |import |#)|TYPE_CHECKING|^@|^except ImportError:")
 _SAME_OF_SMALL_INTEGERS = ("Eq_Is", "NotEq_IsNot")
 # At the limit both are the limit.
-_LIMIT = re.compile(r"(?:return|=) (.+) if \1 [<>] (.+) else \2$")
+_LIMIT = re.compile(
+    r"(?:return|=) (.+) if \1 [<>] (.+) else \2$"
+    r"|if (.+) [<>] (.+):\n\s*\3 = \4\n(?!\s*(?:else|elif (?!\3 )))",
+    re.MULTILINE,
+)
 _AT_LIMIT = ("Lt_LtE", "Gt_GtE")
 # What may make the same of two numbers as + does, and does so of anything and 0.
 _SUM = re.compile(r"[\[(](\w+) \+ (\w+)[\])]")
@@ -293,9 +297,12 @@ def mutants(files):
     return found
 
 
-def same(mutant, text, mutated=""):
-    """Why the mutant of a line, which makes another of it, means the same; or ""."""
-    if mutant[1].endswith(_AT_LIMIT) and _LIMIT.search(text):
+def same(mutant, text, mutated="", below=()):
+    """Why the mutant of a line, which makes another of it, means the same; or "".
+
+    below: the lines below it.
+    """
+    if mutant[1].endswith(_AT_LIMIT) and _LIMIT.search("\n".join([text, *below, ""])):
         return "at the limit both are the limit"
     if _sums_alike(*mutant, text, mutated):
         return "it makes the same of these numbers"
@@ -353,7 +360,8 @@ def area_score(name, count, seed):
     for number, (file, operator, occurrence, row, line, text) in enumerate(
         itertools.islice(draws(files, seed), count)
     ):
-        if same((file, operator), line, text.splitlines()[row - 1].strip()):
+        mutated, *below = text.splitlines()[row - 1 : row + 2]
+        if same((file, operator), line, mutated.strip(), below):
             found["same"] += 1
             continue
         drawn[number] = (file, row, text)
