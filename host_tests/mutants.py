@@ -158,7 +158,8 @@ AREAS = {
     ),
     "verify": (
         [_TOOLS + "loop/verify/"],
-        ["loop/test_verify_by_hand.py", "loop/test_kernels_by_hand.py", _FIGURES + "[reported]"],
+        ["loop/test_courses.py", "loop/test_judge.py", "loop/test_kernels_by_hand.py",
+         "loop/test_power_on.py", _FIGURES + "[reported]"],
     ),
     # its figures see more than whole closings do, which would take all of a mutant's time
     "turning": (
@@ -170,7 +171,7 @@ AREAS = {
             "a_slow_recording_may_end_with_one_sample_more_than_it_is_read_in",
             "one_turn_between_two_rests_is_told_by_gravity_before_and_after_it",
             "only_entries_that_surely_lessen_the_heading_lost_are_deployed")]
-        + ["loop/test_verify_by_hand.py", "loop/test_motion_by_hand.py",
+        + ["loop/test_courses.py", "loop/test_power_on.py", "loop/test_motion_by_hand.py",
            _FIGURES + "[moved]", _FIGURES + "[moved together]"],
     ),
     "findings": (

@@ -48,3 +48,13 @@ def answers(monkeypatch):
             monkeypatch.setattr(of, name, lambda *asked, value=value: value)
 
     return answer
+
+
+@pytest.fixture(scope="module")
+def supplied():
+    """Four power-ons whose bias follows a supply."""
+    made = [dense.made(seed, 24, names=("temp", "vdd_mv", "a")) for seed in (1, 2, 3, 4)]
+    for s in made:
+        s.sources["vdd_mv"] = 5000 + 10 * s.sources["vdd_mv"]
+        s.rate_dps += 0.01 * (s.sources["vdd_mv"] - 5000)[:, None] * [1, 2, 3]
+    return made

@@ -1,12 +1,18 @@
 """Simulated sessions, and rests made of noise, as recordings on disk."""
 
+from dataclasses import replace
+
 import numpy as np
+from zerorate_tools.loop.read.sessions import Session
+from zerorate_tools.loop.verify.power_on import PowerOn
 from zerorate_tools.recordings import Recording, Scales, write_recording
 
 SCALES = Scales("MPU-6050", 1.0, 1310.0, 16384.0, 340.0, 36.53)
 #: Of `at_rest`.
 HZ = 5.0
 MPU = Scales("MPU-6050", HZ, 131.0, 16384.0, 340.0, 36.53)
+#: Samples and ticks a block, of `powered_on`.
+PER, TICKS = 20, 4
 
 
 def recording(session, scales=SCALES, channel="load"):
@@ -59,3 +65,31 @@ def written(folder, recordings):
         paths.append(folder / f"{one.name}.parquet")
         write_recording(one, paths[-1])
     return paths
+
+
+def with_volts(seed=0, blocks=40, bias_lsb=(30, -20, 10)):
+    """Columns of a rest at one temperature, with a voltage beside it."""
+    n = blocks * PER
+    volts = np.random.default_rng(seed + 1000).normal(5000, 50, n)
+    columns = at_rest(seed, n, 0, middle_degc=27.7, swing_degc=0.0)
+    columns |= {g: columns[g] + b for g, b in zip(("gx", "gy", "gz"), bias_lsb)}
+    return {**columns, "volt": np.rint(volts).astype(np.int32)}
+
+
+def powered_on(folder, columns, channels=(), name="s", **more):
+    """A recording on disk and its session, a block of four seconds."""
+    [path] = written(folder, [Recording(columns, MPU, name)])
+    rate = np.column_stack([columns[g] for g in ("gx", "gy", "gz")]) / 131.0
+    blocks = -(-len(rate) // PER)
+    means = [rate[at * PER : (at + 1) * PER].mean(axis=0) for at in range(blocks)]
+    ticks = {n: np.resize(columns[n], blocks * PER).reshape(-1, 5) for n in ("temp", "volt")}
+    sources = {n: of.mean(axis=1) for n, of in ticks.items()}
+    sources["temp"] = 36.53 + sources["temp"] / 340
+    session = Session(
+        *(name, 4.0, TICKS, np.array(means), np.ones(blocks), sources),
+        start_us=int(columns["t_us"][0]),
+        tick_weight=np.full(blocks * TICKS, HZ),
+    )
+    session = replace(session, **more)
+    every = np.ones(session.blocks, bool)
+    return PowerOn(session, path, 131.0, session.rate_dps, every, channels)

@@ -7,6 +7,8 @@ from zerorate_tools.loop.search.catalogue import Candidate
 from zerorate_tools.loop.search.decide import Decision
 from zerorate_tools.loop.search.selection import Found, Selection
 from zerorate_tools.loop.search.steps import Step
+from zerorate_tools.loop.verify.analysis import Analysis
+from zerorate_tools.loop.verify.judge import judge
 
 
 def candidate(*terms, kind="vibration", family="catalogue", refine=()):
@@ -21,6 +23,13 @@ def found(*terms, kind="vibration", family="catalogue", accepted=True, p=0.0, ga
 
 def selected(sessions, *effects, line=(), **more):
     return Selection([*effects], [], 0, Regression(sessions), line, (), [], {}, **more)
+
+
+def analysed(sessions, *effects):
+    """The analysis of sessions whose last is held out."""
+    train, held = sessions[:-1], sessions[-1:]
+    selection = selected(train, *effects)
+    return Analysis(sessions, train, held, selection, judge(selection, held), np.zeros(3))
 
 
 def step(block, dps=(1.0, 1.0, 1.0), deviation_dps=(1.0, 1.0, 1.0), session=0, share=0.0):

@@ -14,7 +14,8 @@ from zerorate_tools.loop.verify.firmware import Firmware
 from zerorate_tools.model import Slot
 from zerorate_tools.model.term import Term
 
-from .test_verify_by_hand import PER, SCALES, at_rest, effect, powered_on, selected
+from .power_ons import MPU, PER, powered_on, with_volts
+from .selections import found, selected
 
 VOLTS = Term("volt", 4000.0, 6000.0, 5000.0)
 LAGGED = replace(VOLTS, lag_mode="lag", lag_s=20.0)
@@ -25,12 +26,10 @@ BLOCKS = 60
 @pytest.fixture(scope="module")
 def power_on(tmp_path_factory):
     """A minute of blocks whose bias follows a voltage that switches."""
-    columns = at_rest(3, BLOCKS)
+    columns = with_volts(3, BLOCKS)
     columns["volt"] = np.where(np.arange(BLOCKS * PER) % 400 > 200, 5200, 4900).astype(np.int32)
     columns["gx"] = columns["gx"] + np.rint((columns["volt"] - 5000) * 0.1).astype(np.int32)
-    made = powered_on(tmp_path_factory.mktemp("one"), columns, ("volt",))
-    made.session.sources["volt"] = columns["volt"].reshape(-1, 5).mean(axis=1)
-    return made
+    return powered_on(tmp_path_factory.mktemp("one"), columns, ("volt",))
 
 
 def one_by_one(pieces, models, whole=None):
@@ -40,7 +39,7 @@ def one_by_one(pieces, models, whole=None):
     blocks = p.blocks(frames)
     out = np.full((len(blocks), 3), np.nan)
     for k, (part, model) in enumerate(zip(pieces.parts, models)):
-        device = Firmware(SCALES, model, p.channels)
+        device = Firmware(MPU, model, p.channels)
         device.power_on()
         device.run(frames, part.available[blocks])
         device.power_on()
@@ -53,18 +52,18 @@ def one_by_one(pieces, models, whole=None):
 
 
 def test_a_piece_s_error_is_that_of_a_device_that_has_not_learned_it(power_on):
-    pieces = PiecesByKernels(power_on, SCALES)
+    pieces = PiecesByKernels(power_on, MPU)
     left = pieces.residual([], [])
     assert left == pytest.approx(one_by_one(pieces, [None] * 10), abs=0.1 / 131)
     assert pieces.residual([], []) is left  # not run again
     scored = replace(power_on, scored=np.arange(BLOCKS) % 7 > 0)
-    some = PiecesByKernels(scored, SCALES).residual([], [])
+    some = PiecesByKernels(scored, MPU).residual([], [])
     assert np.isnan(some[::7]).all() and some[1] == pytest.approx(left[1])
 
 
 @pytest.mark.parametrize("term", [VOLTS, LAGGED, PLAY])
 def test_a_piece_s_model_is_fitted_to_the_others_and_run_by_its_device(power_on, term):
-    pieces = PiecesByKernels(power_on, SCALES)
+    pieces = PiecesByKernels(power_on, MPU)
     models = pieces.models([], [term])
     for model, part in zip(models, pieces.parts):
         [slot] = model.slots
@@ -81,7 +80,7 @@ def test_a_piece_s_model_is_fitted_to_the_others_and_run_by_its_device(power_on,
 
 
 def test_a_stretch_is_run_from_three_blocks_before_it(power_on):
-    pieces, told = PiecesByKernels(power_on, SCALES), []
+    pieces, told = PiecesByKernels(power_on, MPU), []
 
     def run(frames, learn):
         told.append(len(frames) // PER)
@@ -95,7 +94,7 @@ def test_a_stretch_is_run_from_three_blocks_before_it(power_on):
 
 
 def test_what_the_firmware_cannot_hold_has_no_error_and_gains_nothing(power_on):
-    pieces = PiecesByKernels(power_on, SCALES)
+    pieces = PiecesByKernels(power_on, MPU)
     beyond = replace(VOLTS, lag_mode="lag", lag_s=1e9)
     assert np.isnan(pieces.residual([], [beyond])).all()
     assert pieces.residual([], [beyond]).shape == (BLOCKS, 3)
@@ -103,16 +102,16 @@ def test_what_the_firmware_cannot_hold_has_no_error_and_gains_nothing(power_on):
 
 @pytest.mark.parametrize("terms", [[], [VOLTS], [LAGGED]])
 def test_a_recording_read_in_parts_gives_what_it_gives_at_once(power_on, monkeypatch, terms):
-    whole = PiecesByKernels(power_on, SCALES).residual([], terms)
+    whole = PiecesByKernels(power_on, MPU).residual([], terms)
     monkeypatch.setattr(module, "_ROWS", 170)
-    parts = PiecesByKernels(power_on, SCALES).residual([], terms)
+    parts = PiecesByKernels(power_on, MPU).residual([], terms)
     assert parts == pytest.approx(whole, abs=0.3 / 131)
 
 
 @pytest.fixture(scope="module")
 def by_pieces(power_on):
-    pieces = PiecesByKernels(power_on, SCALES)
-    chosen = selected([power_on.session], effect(VOLTS), effect(LAGGED), alone=True)
+    pieces = PiecesByKernels(power_on, MPU)
+    chosen = selected([power_on.session], found(VOLTS), found(LAGGED), alone=True)
     return pieces, chosen
 
 
@@ -150,9 +149,9 @@ def test_what_motion_showed_is_beside_all_effects_alone(by_pieces):
 
 def test_a_stretch_behind_a_step_is_judged_about_its_own_mean(power_on):
     session = replace(power_on.session, steps=(Step(0, 30, np.full(3, 0.5), 100.0, 0.0),))
-    stepped = PiecesByKernels(replace(power_on, session=session), SCALES)
+    stepped = PiecesByKernels(replace(power_on, session=session), MPU)
     left = stepped.residual([], [])
-    plain = PiecesByKernels(power_on, SCALES).residual([], [])
+    plain = PiecesByKernels(power_on, MPU).residual([], [])
     assert left == pytest.approx(stepped.about_stretches(plain), abs=0.1 / 131)
     assert not np.allclose(left, plain)
 
