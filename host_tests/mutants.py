@@ -145,7 +145,8 @@ AREAS = {
     ),
     "fit": (
         [_TOOLS + "loop/fit/"],
-        ["loop/test_fit_dense.py", "loop/test_fit_by_hand.py", "loop/test_smooth.py"]
+        ["loop/test_" + name for name in (
+            "chance.py", "left_out.py", "line.py", "pieces.py", "regression.py", "smooth.py")]
         + [_FIGURES + "[steps found]", _FIGURES + "[reported]"],
     ),
     "search": (

@@ -4,10 +4,10 @@ Nothing here uses the loop's own algebra: no transform, no cross products, no pr
 """
 
 from dataclasses import dataclass, replace
-from itertools import product
 
 import numpy as np
 from scipy.linalg import null_space
+from scipy.special import logsumexp
 from zerorate_tools.loop.fit.noise import shapes
 from zerorate_tools.loop.read.sessions import Session
 from zerorate_tools.model.term import Term
@@ -15,6 +15,9 @@ from zerorate_tools.model.term import Term
 SHAPES = shapes()
 #: What a grid that allows steep noise takes from it, nats an axis.
 PRIOR = np.array([-3.0 if s.slope else 0.0 for s in SHAPES])
+#: Of waves over the range of a curve, and of their variance, or of what play operators add.
+LENGTHS = (0.05, 0.1, 0.2, 0.4, 0.8)
+SIZES = [1e-3, *(10.0**e for e in np.arange(-1, 4.1, 0.5))]
 SOURCES = ("a", "b", "c", "d")
 A, B, C, D = (Term(name) for name in SOURCES)
 
@@ -28,6 +31,11 @@ def made(seed, blocks, gap=(), scale=1.0, names=SOURCES):
     weight = np.ones(blocks)
     rate[list(gap)], weight[list(gap)] = np.nan, 0.0
     return Session(f"s{seed}", 20.0, 1, rate, weight, sources)
+
+
+def is_of_the_few(shape):
+    """Whether it stands for others where many fits are asked for."""
+    return not shape.slope and shape.flicker in (0, 0.2, 1.3) and shape.walk in (0, 0.03, 0.15, 1)
 
 
 def white(seed, blocks, **sources):
@@ -158,11 +166,10 @@ def marginal(p: Problem, axis, free, own, variance):
         whole[free] = b
         whole[own] = variance[own] * (p.x[:, own].T @ to @ left)
         told.append(whole)
-    top = max(likely)
-    weight = np.exp(np.array(likely) - top)
-    return top + np.log(weight.sum()), weight @ np.array(told) / weight.sum()
+    return logsumexp(likely), by_likelihood(likely, told)
 
 
-def products_of(sizes, shares):
-    """(size, size times share) of every pair."""
-    return [tuple(np.cumprod(pair)) for pair in product(sizes, *shares)]
+def by_likelihood(nats, values):
+    """The mean of values by the likelihood of each."""
+    weight = np.exp(np.array(nats) - max(nats))
+    return np.tensordot(weight / weight.sum(), values, 1)

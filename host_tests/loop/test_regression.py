@@ -1,21 +1,17 @@
-"""The loop's fits give what the textbook gives, with whole covariance matrices in float64."""
+"""A fit is what the textbook gives, with whole covariance matrices in float64."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.stats import chi2
-from zerorate_tools.loop.fit import shrunk as shrinking
-from zerorate_tools.loop.fit.common_cause import coherence, turned_axes
 from zerorate_tools.loop.fit.cross_products import GappyWhitener, cross_products, whitener
-from zerorate_tools.loop.fit.left_out import fitted_without, gains, of_plays, session_misfit
 from zerorate_tools.loop.fit.likelihood import session_scale
 from zerorate_tools.loop.fit.regression import Regression, predicted
-from zerorate_tools.loop.search.steps import Step
-from zerorate_tools.model.term import Term, play
+from zerorate_tools.model.term import Term
 
 from . import dense
 from .dense import A, B, C, D
+from .selections import step
 
 SCALE = np.array([[0.5, 1.0, 1.0], [1.0, 1.0, 2.0], [2.0, 1.0, 0.5]])
 
@@ -87,7 +83,7 @@ def test_a_short_gap_is_a_straight_line_in_every_column(few):
     made = w.prepare(columns)
     g = cross_products([w], [made[:, :3]], [made[:, 3:4]], [made[:, 4:]])
     assert g.count.tolist() == [37]
-    shapes = [i for i, s in enumerate(dense.SHAPES) if not few or is_of_the_few(s)]
+    shapes = [i for i, s in enumerate(dense.SHAPES) if not few or dense.is_of_the_few(s)]
     for row, shape in enumerate(shapes):
         to = np.linalg.inv(p.v[shape])
         every = (q.T @ drawn).T @ to @ (q.T @ drawn)
@@ -100,10 +96,6 @@ def test_a_short_gap_is_a_straight_line_in_every_column(few):
         assert g.logdet[0, row] == pytest.approx(np.linalg.slogdet(p.v[shape])[1], rel=1e-7)
     assert len(g.logdet[0]) == len(shapes)
     assert whitener(bridged.available, few) is w
-
-
-def is_of_the_few(shape):
-    return not shape.slope and shape.flicker in (0, 0.2, 1.3) and shape.walk in (0, 0.03, 0.15, 1)
 
 
 def test_products_of_some_sessions_and_of_sums_of_nuisances(regression):
@@ -134,23 +126,21 @@ def test_whitened_columns_that_are_known_are_given_again_and_no_more_are_kept_th
 
 
 def test_what_an_earlier_step_took_is_a_nuisance_of_its_session(sessions):
-    stepped = replace(sessions[1], steps=(Step(0, 9, np.zeros(3), 180.0, 0.0),))
-    without = stepped.rate_dps.copy()
-    with_step = without + 5.0 * (np.arange(21) >= 9)[:, None]
-    fits = [
-        Regression([sessions[0], replace(stepped, rate_dps=rate)]).fit([A])
-        for rate in (without, with_step)
-    ]
-    assert fits[0].coefficients == pytest.approx(fits[1].coefficients, rel=1e-6)
-    assert fits[0].base.fitted.shape == (3, 2)
-    regression = Regression([sessions[0], stepped])
-    assert len(regression.events()) == 1
-    regression.set_events([[np.arange(18.0) > 4, np.zeros(21)]])
-    assert len(regression.events()) == 2
-    regression.set_events([], kept=[])
-    assert regression.events() == []
-    regression.set_events([])
-    assert len(regression.events()) == 1
+    stepped = replace(sessions[1], steps=(step(9),))
+    behind = (np.arange(21) >= 9)[:, None]
+    plain, moved = (
+        Regression([sessions[0], replace(stepped, rate_dps=stepped.rate_dps + dps * behind)])
+        for dps in (0.0, 5.0)
+    )
+    fit = plain.fit([A])
+    assert fit.coefficients == pytest.approx(moved.fit([A]).coefficients, rel=1e-6)
+    assert fit.base.fitted.shape == (3, 2) and len(plain.events()) == 1
+    plain.set_events([[np.arange(18.0) > 4, np.zeros(21)]])
+    assert len(plain.events()) == 2
+    plain.set_events([], kept=[])
+    assert plain.events() == []
+    plain.set_events([])
+    assert len(plain.events()) == 1
 
 
 def test_turned_axes_are_turned_back_and_coefficients_are_of_the_sensor(regression):
@@ -200,131 +190,16 @@ def test_squares_of_acceleration_are_shrunk_by_a_thousandth_and_told_weights_by_
     assert tried.xx[:, :, 0] == pytest.approx(more.zz)
 
 
-def test_a_session_left_out_is_predicted_by_the_others_alone(regression, sessions):
-    found = gains(regression, [A], [B])
-    full = regression.fit([A, B]).base
-    for s in range(3):
-        lost = []
-        for terms, own in (([A], []), ([A, B], [1])):
-            total = 0.0
-            for a, p in enumerate(problems(sessions, terms)):
-                to = np.linalg.inv(p.v[full.best[a]])
-                others = np.concatenate(
-                    [np.arange(r.start, r.stop) for k, r in enumerate(p.rows) if k != s]
-                )
-                x, y, v = p.x[others], p.y[others, a], to[np.ix_(others, others)]
-                zz = x.T @ v @ x
-                for j in own:  # normal about zero, three times as wide as it is on all axes
-                    size = np.sqrt((full.fitted[:, j] ** 2).mean())
-                    zz[j, j] += full.variance[a] / (3.0 * size) ** 2
-                b = np.linalg.solve(zz, x.T @ v @ y)
-                r = p.rows[s]
-                left = p.y[r, a] - p.x[r] @ b
-                total += left @ to[r, r] @ left / full.variance[a]
-            lost.append(total)
-        assert found[s] == pytest.approx(0.5 * (lost[0] - lost[1]), rel=1e-4, abs=1e-7)
-
-
-PLAYS = {
-    "p": replace(A, memory="play", width=1.0),
-    "q": replace(A, memory="play", width=2.5),
-    "r": replace(A, memory="play", width=1.0, power=2),
-}
-WHOLE = [1e-3, *(10.0**e for e in np.arange(-1, 4.1, 0.5))]
-ALONE = [(size,) for size in WHOLE]
-WITH_SQUARES = dense.products_of(WHOLE, [(1e-3, 0.1, 0.3, 1.0)])
-
-
-def played(session):
-    """The session with what the play operators make of its source as sources of their own."""
-    made = {n: play(session.sources["a"], t.width) ** t.power for n, t in PLAYS.items()}
-    return replace(session, sources={**session.sources, **made})
-
-
-@pytest.mark.parametrize(
-    ("names", "groups", "sizes", "few", "how"),
-    [
-        ("bpq", [[1, 2]], ALONE, True, {}),
-        ("bpq", [[1, 2]], ALONE, True, {"alike": False}),
-        ("bprq", [[1, 3], [2]], WITH_SQUARES, False, {}),  # squares have a size of their own
-        ("pr", [[0], [1]], WITH_SQUARES, True, {}),  # with nothing beside them
-        ("dbc", [[1, 2]], ALONE, False, {"own": slice(1, 3), "alike": False}),
-    ],
-)
-def test_weights_are_the_mean_of_their_distribution(names, groups, sizes, few, how):
-    sessions = [dense.made(11, 14), dense.made(12, 18, gap=range(6, 12))]
-    shapes = [s for s in dense.SHAPES if is_of_the_few(s)] if few else dense.SHAPES
-    p = dense.problem([*map(played, sessions)], [Term(n) for n in names], shapes_=shapes)
-    nats, mean = dense.shrunk(p, groups, sizes, **{"alike": how.get("alike", True)})
-    terms, regression = [PLAYS.get(n, Term(n)) for n in names], Regression(sessions, few=few)
-    g = regression.cross_products(terms)
-    told = shrinking.shrink(g, regression.scale, terms, **how)
-    assert told.coefficients == pytest.approx(mean, rel=1e-4, abs=1e-7)
-    assert told.nats == pytest.approx(nats, abs=1e-5)
-    held = np.isin(np.arange(len(names)), sum(groups, []))
-    assert ((told.precision > 0) == held).all()
-    if not how:
-        assert (of_plays(g, regression.scale, terms) == told.precision).all()
-        assert (of_plays(g, regression.scale, [B] * len(terms)) == 0).all()
-
-
-def test_a_coefficient_known_to_be_small_is_held_back(regression):
-    g = regression.cross_products([A, B])
-    free = fitted_without(g, 0, 1, 3, regression.scale)
-    held = fitted_without(g, 0, 1, 3, regression.scale, np.array([0.0, 1e12]))
-    assert abs(held[1]) < 1e-6 * abs(free[1])
-    misfits = [session_misfit(g, 0, [3] * 3, np.ones(3) * v, regression.scale) for v in (1.0, 2.0)]
-    assert misfits[0] == pytest.approx(2 * misfits[1])
-
-
-def test_the_chance_of_a_common_cause_is_bartletts(sessions):
-    regression = Regression(sessions[:2])
-    fit, best = regression.fit([A]), {}
-    left = regression.left([A], fit)
-    for lowest in (3, 6, 12, 24):
-        rows = []
-        for i, s in enumerate(sessions[:2]):
-            own = np.column_stack(
-                [dense.spectrum(dense.SHAPES[g], s.blocks) for g in fit.base.best]
-            )
-            rows.append((left[i] / np.sqrt(own))[:lowest])
-        rows = np.vstack(rows)
-        logdet = np.log(np.linalg.det(np.corrcoef(rows.T)))
-        best[lowest] = 4 * chi2.sf(-(len(rows) - 1 - 11 / 6) * logdet, 3)
-    p, covariance = coherence(regression, [A])
-    assert p == pytest.approx(min(1.0, min(best.values())), rel=1e-4)
-    at = min(best, key=best.get) if p < 1 else 3
-    low = np.vstack([r[:at] for r in left])
-    assert covariance == pytest.approx(low.T @ low / len(low))
-
-
-def test_turned_axes_have_equal_white_noise_and_the_first_is_along_what_is_common(sessions):
-    regression = Regression(sessions[:2])
-    axes = turned_axes(regression, [A])
-    white = np.diag(regression.fit([A]).base.variance)
-    assert axes @ white @ axes.T == pytest.approx(np.eye(3), abs=1e-9)
-    _, covariance = coherence(regression, [A])
-    spread = np.diag(axes @ covariance @ axes.T)
-    assert spread[0] >= spread[1] >= spread[2] > 0
-    alike = replace(sessions[0], rate_dps=np.zeros_like(sessions[0].rate_dps))
-    assert (turned_axes(Regression([alike]), [A]) == np.eye(3)).all()
-
-
-@pytest.mark.parametrize(("times", "differs"), [(1.16, False), (1.23, True)])
-def test_a_session_is_noisier_beyond_two_and_a_half_deviations_of_what_it_may_seem(times, differs):
-    one = dense.made(1, 400)
-    one.rate_dps[:] = np.random.default_rng(3).normal(size=(400, 3))
+@pytest.mark.parametrize(("times", "told"), [(1.16, 1.0), (1.23, 1.23**0.5)])
+def test_a_session_is_noisier_beyond_two_and_a_half_deviations_of_what_it_may_seem(times, told):
+    one = dense.white(1, 400)
     loud = replace(one, rate_dps=times * one.rate_dps)
     scale = session_scale(Regression([one, loud]).cross_products([]))
-    expected = times**0.5 if differs else 1.0
-    assert scale[1] == pytest.approx([expected] * 3) and scale[0] == pytest.approx(
-        [1 / expected] * 3
-    )
+    assert scale == pytest.approx(np.outer([1 / told, told], np.ones(3)))
 
 
 def test_a_block_is_an_outlier_beyond_six_robust_deviations_from_nine_neighbours():
-    made = dense.made(7, 900)
-    made.rate_dps[:] = np.random.default_rng(7).normal(size=(900, 3))
+    made = dense.white(7, 900)
     made.rate_dps[::45, 1] += np.linspace(-13, 13, 20)
     regression = Regression([made])
     regression.settle([])

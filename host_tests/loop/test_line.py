@@ -1,0 +1,235 @@
+"""The line, smooth curves and free curves of the fit, beside plain least squares."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from zerorate_tools.loop.fit import line
+from zerorate_tools.loop.fit.free_curve import draw, is_curve, of_any_form, parts
+from zerorate_tools.loop.fit.regression import Regression
+from zerorate_tools.loop.fit.smooth import curve_of, matern, smooth
+from zerorate_tools.model.term import Term, play
+
+from . import dense
+from .dense import A, B
+from .selections import step
+
+TEMP = Term("temp", 10.0, 40.0, 20.0)
+LINE = Term("temp", centre=25.0)
+
+
+@pytest.fixture(scope="module")
+def sessions():
+    """Two with a temperature, the second with a gap and a step that was taken out."""
+    made = [
+        dense.made(1, 30, names=("temp", "a")),
+        dense.made(2, 36, range(4, 9), names=("temp", "a")),
+    ]
+    for s in made:
+        s.sources["temp"] = 25 + 3 * s.sources["temp"]
+    return [made[0], replace(made[1], steps=(step(12),))]
+
+
+def with_offsets(sessions, columns, rates):
+    """(x, y) of what is there, each stretch of each session less its mean."""
+    both = [np.hstack(of) for of in zip(columns, rates)]
+    rows = np.vstack([s.less_offsets(v, s.available)[s.available] for s, v in zip(sessions, both)])
+    return rows[:, :-3], rows[:, -3:]
+
+
+def least_squares(sessions, columns, rates):
+    return np.linalg.lstsq(*with_offsets(sessions, columns, rates), rcond=None)[0]
+
+
+def test_the_line_is_that_of_least_squares_with_an_offset_a_stretch(sessions):
+    columns = [np.column_stack([s.sources["temp"] - 25, s.sources["a"]]) for s in sessions]
+    expected = least_squares(sessions, columns, [s.rate_dps for s in sessions])
+    assert line.ordinary([LINE, A], sessions) == pytest.approx(expected, rel=1e-9)
+    still = [replace(s, sources={**s.sources, "b": np.ones(s.blocks)}) for s in sessions]
+    with_none = np.vstack([expected, np.zeros(3)])
+    assert line.ordinary([LINE, A, B], still) == pytest.approx(with_none, rel=1e-9)
+
+
+def test_effects_are_taken_from_the_rates_before_the_line_is_fitted(sessions):
+    given = np.array([[0.5, -1.0, 2.0]])
+    less = [s.rate_dps - np.outer(s.sources["a"], given) for s in sessions]
+    expected = least_squares(sessions, [s.sources["temp"][:, None] for s in sessions], less)
+    assert line.ordinary([LINE], sessions, [A], given) == pytest.approx(expected, rel=1e-9)
+
+
+def test_play_operators_are_held_back_by_a_twentythousandth_of_their_own_size(sessions):
+    sessions = [replace(s, sources={**s.sources, "a": s.sources["a"] / 10}) for s in sessions]
+    widths = 0.1, 0.11
+    terms = [LINE, *(replace(A, memory="play", width=w) for w in widths)]
+    columns = [
+        np.column_stack([s.sources["temp"] - 25, *(play(s.sources["a"], w) for w in widths)])
+        for s in sessions
+    ]
+    x, y = with_offsets(sessions, columns, [s.rate_dps for s in sessions])
+    held = np.diag([0.0, *(5e-5 * len(x) * x[:, 1:].var(axis=0))])
+    expected = np.linalg.solve(x.T @ x + held, x.T @ y)
+    assert line.ordinary(terms, sessions) == pytest.approx(expected, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        *({"source": "a"}, {"lo": -np.inf}, {"power": 2}, {"memory": "play"}, {"second": "a"}),
+        *({"lag_mode": "lag", "lag_s": 9.0}, {"knot": 1.0}, {"delay_s": 1.0}, {"decay_s": 1.0}),
+    ],
+)
+def test_only_the_plain_line_over_temperature_is_the_slope(change):
+    assert line.is_slope(TEMP)
+    assert not line.is_slope(replace(TEMP, **change))
+    assert line.less_slope((LINE,), [A, TEMP]) == ()
+    assert line.less_slope((LINE,), [A, replace(TEMP, **change)]) == (LINE,)
+
+
+def test_the_line_is_applied_where_no_slope_is():
+    one = line.with_line([LINE, LINE], [A, TEMP], np.array([[1, 1, 1], [0, 1, 0.0]]))
+    assert one.tolist() == [[1, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 0]]
+    assert line.with_line([], [A], np.ones((1, 3))).tolist() == [[1, 1, 1]]
+    assert line.with_line([LINE], [], np.ones((0, 3))).tolist() == [[1, 1, 1]]
+
+
+def deployed(sessions, terms, straight=(LINE,), effects=True, **more):
+    """The fit of all sessions, and the terms and coefficients that are deployed."""
+    plain = {"alone": False, "stands_alone": False, "applied": np.ones((len(terms), 3)), **more}
+    regression = Regression(sessions)
+    selection = SimpleNamespace(straight=straight, terms=terms, regression=regression, **plain)
+    return regression.fit([*straight, *terms]).coefficients, *line.deployed(selection, effects)
+
+
+def test_what_is_deployed_is_the_fit_and_beside_it_the_line_as_the_firmware_learns_it(sessions):
+    fitted, terms, told = deployed(sessions, [A])
+    assert terms == [LINE, A] and told[1] == pytest.approx(fitted[1])
+    assert told[0] == pytest.approx(line.ordinary([LINE], sessions, [A], told[1:])[0])
+    _, terms, told = deployed(sessions, [A], effects=False)
+    assert terms == [LINE] and told == pytest.approx(line.ordinary([LINE], sessions))
+    _, _, told = deployed(sessions, [A], applied=np.array([[1.0, 0.0, 1.0]]))
+    assert told[1, 1] == 0
+
+
+def test_a_recording_alone_is_learned_like_the_line_and_a_slope_has_none_beside_it(sessions):
+    _, _, told = deployed(sessions, [A], alone=True)
+    assert told[1] == pytest.approx(line.ordinary([LINE, A], sessions)[1])
+    fitted, terms, told = deployed(sessions, [TEMP], ())
+    assert terms == [TEMP] and told == pytest.approx(fitted)
+    _, terms, told = deployed(sessions, [], ())
+    assert terms == [] and told.shape == (0, 3)
+
+
+# --- curves of any form ---
+
+
+def bends(lo=15.0, apart=4.0, number=4):
+    slope = Term("temp", lo, lo + apart * (number + 1), lo)
+    return [slope, *(replace(slope, knot=apart * (k + 1.0)) for k in range(number))]
+
+
+@pytest.mark.parametrize("beside", [[], [A]])
+def test_a_line_that_bends_often_is_the_mean_of_all_curves_by_their_likelihood(sessions, beside):
+    terms = [*beside, *bends()]
+    corners = 15.0 + 4.0 * np.arange(6)
+    at = np.linspace(corners[0], corners[-1], 16)
+    columns, plain = [], 1 + len(beside)
+    for s in sessions:
+        shares = np.column_stack([np.interp(s.sources["temp"], at, u) for u in np.eye(16)])
+        others = [s.sources[t.source] for t in beside]
+        columns.append(np.column_stack([s.sources["temp"], *others, shares]))
+    x, y = with_offsets(sessions, columns, [s.rate_dps for s in sessions])
+    straight, w = x[:, :plain], x[:, plain:]
+    left, waves = (v - straight @ np.linalg.pinv(straight) @ v for v in (y, w))
+    free = len(y) - plain - 3  # offsets: one session, and two stretches
+    nats, curves = [], []
+    for length in dense.LENGTHS:
+        d = np.sqrt(5) * np.abs(at[:, None] - at) / (length * (at[-1] - at[0]))
+        k = (1 + d + d**2 / 3) * np.exp(-d) + 1e-10 * np.eye(16)
+        assert matern(at, length) == pytest.approx(k)
+        for size in dense.SIZES:
+            v = np.eye(len(y)) + size * waves @ k @ waves.T
+            to = np.linalg.inv(v)
+            squares = np.einsum("na,nm,ma->a", left, to, left)
+            likely = -0.5 * np.linalg.slogdet(v)[1] - 0.5 * free * np.log(squares)
+            nats.append(likely.sum())
+            curves.append(size * k @ waves.T @ to @ left)
+    deviation = dense.by_likelihood(nats, curves)
+    fitted = np.linalg.pinv(straight) @ (y - w @ deviation)
+    curve = deviation + at[:, None] * fitted[0]
+    nearest = np.column_stack([np.interp(at, corners, u) for u in np.eye(6)])
+    heights = np.linalg.lstsq(nearest, curve, rcond=None)[0]
+    slopes = np.diff(heights, axis=0) / 4.0
+    expected = np.vstack([fitted[1:], slopes[:1], np.diff(slopes, axis=0)])
+    assert smooth(terms, curve_of(terms), sessions) == pytest.approx(expected, rel=1e-4, abs=1e-7)
+    assert line.ordinary(terms, sessions) == pytest.approx(expected, rel=1e-4, abs=1e-7)
+
+
+def test_a_slope_with_two_bends_or_more_is_a_curve_and_nothing_else_is():
+    terms = bends()
+    assert curve_of(terms) == [0, 1, 2, 3, 4]
+    assert curve_of([A, *terms[:3]]) == [1, 2, 3] and curve_of(terms[:2]) == []
+    assert curve_of([replace(t, lo=-np.inf) for t in terms]) == []
+    assert curve_of([*terms, replace(terms[1], source="a")]) == [0, 1, 2, 3, 4]
+
+
+def test_a_free_curve_is_the_likeliest_form_over_its_nine_points():
+    sessions = [dense.made(1, 15, names=("temp", "a")), dense.made(2, 17, names=("temp", "a"))]
+    term = Term("a", -4.0, 5.0, 0.0)
+    for s in sessions:
+        s.sources["a"] = np.clip(s.sources["a"], -4.0, 5.0)
+    points = np.linspace(-4.0, 5.0, 9)
+    shares = [
+        np.column_stack([np.interp(s.sources["a"], points, u) for u in np.eye(9)]) for s in sessions
+    ]
+    told, curves, at = [], [], np.linspace(-1, 1, 9)
+    for length in dense.LENGTHS:
+        root = np.column_stack([at, np.linalg.cholesky(matern(at, length))])
+        both = []
+        for s, share in zip(sessions, shares):
+            own = {f"x{k}": c for k, c in enumerate((share @ root).T)}
+            both.append(replace(s, sources={"t": s.sources["temp"], **own}))
+        names = ["t", *(f"x{k}" for k in range(10))]
+        p = dense.problem(both, [Term(n) for n in names])
+        sizes = [(size,) for size in dense.SIZES]
+        nats, mean = dense.shrunk(p, [list(range(2, 11))], sizes, alike=False)
+        told.append(nats)
+        curves.append(root @ mean[1:11])
+    values = dense.by_likelihood(told, curves)
+    x, _ = with_offsets(sessions, shares, [s.rate_dps for s in sessions])
+    squares, axes = np.linalg.eigh(values.T @ x.T @ x @ values)
+    form = values @ axes[:, -1]
+    table = 2 * (form - form.min()) / np.ptp(form) - 1
+    drawn, lost = draw(Regression(sessions), [Term("temp")], term)
+    sign = np.sign(drawn.table @ table)
+    assert drawn.table == pytest.approx(sign * table, abs=1e-4)
+    assert lost == pytest.approx(squares[:2].sum() / squares.sum(), rel=1e-3)
+    assert replace(drawn, table=None) == term
+
+
+def test_a_rate_of_nothing_has_no_curve():
+    still = dense.made(1, 15, names=("temp", "a"))
+    still.rate_dps[:] = 0.0
+    term = Term("a", -4.0, 5.0, 0.0)
+    drawn, lost = draw(Regression([still]), [], term)
+    assert drawn == term and lost == 0.0
+
+
+def test_parts_carry_nine_tenths_of_what_curves_vary_by_in_ten_or_fewer_forms():
+    tables = np.array([t.table for t in parts(Term("a", 0.0, 1.0))]).T
+    at = np.linspace(-1, 1, 9)
+    waves = np.mean([matern(at, length) for length in dense.LENGTHS], axis=0)
+    centred = np.eye(9) - 1 / 9
+    whole = centred @ (np.outer(at, at) + waves) @ centred
+    held = tables @ tables.T
+    most = np.sort(np.linalg.eigvalsh(whole))[::-1]
+    fewest = int(np.searchsorted(np.cumsum(most) / most.sum(), 0.9)) + 1
+    assert tables.shape[1] == fewest
+    assert np.linalg.eigvalsh(held)[-fewest:][::-1] == pytest.approx(most[:fewest])
+    assert tables.T @ tables == pytest.approx(np.diag(most[:fewest][::-1]), abs=1e-9)
+    assert whole @ tables == pytest.approx(tables * most[:fewest][::-1], abs=1e-9)
+    several = parts(Term("a", 0.0, 1.0))
+    points = np.array([t.table for t in of_any_form(several)])
+    assert np.linalg.matrix_rank(np.vstack([points, np.ones(9)])) == 9  # but for an offset
+    assert of_any_form(several[:1]) == several[:1]
+    assert is_curve(several) and not is_curve(several[:1]) and not is_curve([*several, A])
