@@ -120,6 +120,7 @@ def test_what_is_built_differs_from_what_was_wanted_by_rounding_alone():
         ([SLOTS[3]] * 3, "room for 2 tables"),
         ([replace(SLOTS[3], term=replace(SLOTS[3].term, table=(2.0,) * 9))], "within -1..1"),
         ([Slot(Term("temp", lag_mode="lag", lag_s=1e9), (1e-3,) * 3)], "too long"),
+        ([Slot(Term("temp", delay_s=1e6), (1e-3,) * 3)], "delay_s of 1e.06 s is too long"),
         ([Slot(Term("x", lag_mode="lag", lag_s=9, memory="peak"), (1e-6,) * 3)], "both a lag"),
         ([Slot(Term("x", power=0.5), (1e-6,) * 3)], "power 0.5"),
         ([Slot(PLAY, (1e-3,) * 3)] * 2, "twice"),

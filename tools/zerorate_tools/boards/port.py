@@ -130,11 +130,12 @@ class BoardStream:
     def _take(self, recorder: SampleTaker, kind: int, payload: bytes) -> None:
         if kind == SAMPLE:
             self._take_sample(recorder, payload)
-        elif kind == MESSAGE and payload.startswith(b"restarted"):
-            recorder.result.restarts += 1
-            recorder.discard()
         elif kind == MESSAGE:
-            recorder.result.bus_errors += 1
+            if payload.startswith(b"restarted"):
+                recorder.result.restarts += 1
+                recorder.discard()
+            else:
+                recorder.result.bus_errors += 1
 
     def _take_sample(self, recorder: SampleTaker, payload: bytes) -> None:
         sequence, ticks_us, status, words = sample_of(payload)

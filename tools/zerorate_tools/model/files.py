@@ -171,7 +171,7 @@ def read_model(path: str | PathLike[str]) -> Model:
     path = Path(path)
     settle(path.parent)
     data = bytes_of(path, "name a model.bin or model.json", BadModel)
-    if data[:1] != b"{" and data.lstrip()[:1] != b"{":
+    if not data.lstrip().startswith(b"{"):
         return decoded(data, path)
     model = from_json(data, path)
     try:
