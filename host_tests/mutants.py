@@ -177,7 +177,8 @@ AREAS = {
     ),
     "findings": (
         [_TOOLS + "loop/"],
-        ["loop/test_report_form.py", _FIGURES + "[reported]"],
+        ["loop/test_analyse.py", "loop/test_report_form.py", "loop/test_unexplained.py",
+         _FIGURES + "[reported]"],
     ),
     "report": (
         [_TOOLS + "report/"],
