@@ -3,6 +3,7 @@
 import pytest
 from zerorate_bench.loop.simulated import simulate
 from zerorate_tools.closing import close, load
+from zerorate_tools.loop.fit.regression import Regression
 from zerorate_tools.recordings import Recording
 
 from . import dense
@@ -57,4 +58,18 @@ def supplied():
     for s in made:
         s.sources["vdd_mv"] = 5000 + 10 * s.sources["vdd_mv"]
         s.rate_dps += 0.01 * (s.sources["vdd_mv"] - 5000)[:, None] * [1, 2, 3]
+    return made
+
+
+@pytest.fixture(scope="module")
+def with_gap():
+    """Two whole ones, and one with a gap too long to be bridged."""
+    return [dense.made(1, 18), dense.made(2, 21), dense.made(3, 24, gap=range(5, 17))]
+
+
+@pytest.fixture
+def regression(with_gap):
+    """Of these, each axis of each with a noise of its own."""
+    made = Regression(with_gap)
+    made.scale = dense.SCALE
     return made

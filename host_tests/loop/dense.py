@@ -20,6 +20,8 @@ LENGTHS = (0.05, 0.1, 0.2, 0.4, 0.8)
 SIZES = [1e-3, *(10.0**e for e in np.arange(-1, 4.1, 0.5))]
 SOURCES = ("a", "b", "c", "d")
 A, B, C, D = (Term(name) for name in SOURCES)
+#: Of the noise of three sessions, each axis its own.
+SCALE = np.array([[0.5, 1.0, 1.0], [1.0, 1.0, 2.0], [2.0, 1.0, 0.5]])
 
 
 def made(seed, blocks, gap=(), scale=1.0, names=SOURCES):

@@ -1,5 +1,6 @@
 """What the firmware makes of an analysis: which models are run over which sessions, and pruned."""
 
+from copy import copy
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -30,9 +31,7 @@ class Counting:
         self.lived, self.on, self.offset = 0, 0, np.zeros(3, int)
 
     def copy(self):
-        twin = Counting(None, self.number)
-        twin.lived, twin.on, twin.offset = self.lived, self.on, self.offset
-        return twin
+        return copy(self)
 
     def power_on(self):
         self.on += 1

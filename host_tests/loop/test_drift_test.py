@@ -10,11 +10,10 @@ from zerorate_tools.loop.search import drift_test
 from zerorate_tools.model.term import Term
 
 from . import dense
-from .dense import A, B
+from .dense import SCALE, A, B
 from .selections import candidate
 
 FOLLOWS = candidate(A)
-SCALE = np.array([[0.5, 1.0, 1.0], [1.0, 1.0, 2.0], [2.0, 1.0, 0.5]])
 
 
 def test_chances_taken_together_are_fishers():

@@ -19,25 +19,10 @@ from zerorate_tools.loop.fit.regression import Regression
 from zerorate_tools.model.term import Term, play
 
 from . import dense
-from .dense import A, B
-
-SCALE = np.array([[0.5, 1.0, 1.0], [1.0, 1.0, 2.0], [2.0, 1.0, 0.5]])
+from .dense import SCALE, A, B
 
 
-@pytest.fixture(scope="module")
-def sessions():
-    """Two whole ones, and one with a gap too long to be bridged."""
-    return [dense.made(1, 18), dense.made(2, 21), dense.made(3, 24, gap=range(5, 17))]
-
-
-@pytest.fixture
-def regression(sessions):
-    made = Regression(sessions)
-    made.scale = SCALE
-    return made
-
-
-def test_a_session_left_out_is_predicted_by_the_others_alone(regression, sessions):
+def test_a_session_left_out_is_predicted_by_the_others_alone(regression, with_gap):
     full = regression.fit([A, B]).base
     wide = full.variance / (3.0 * np.sqrt((full.fitted[:, 1] ** 2).mean())) ** 2
 
@@ -45,7 +30,7 @@ def test_a_session_left_out_is_predicted_by_the_others_alone(regression, session
         """Squares of a session, by coefficients of the others, in units of the noise."""
         total = 0.0
         for a in range(3):
-            p = dense.problem(sessions, terms, SCALE[:, a])
+            p = dense.problem(with_gap, terms, SCALE[:, a])
             to, own = np.linalg.inv(p.v[full.best[a]]), p.rows[s]
             rest = np.delete(np.arange(len(p.y)), own)
             x, y, v = p.x[rest], p.y[rest, a], to[np.ix_(rest, rest)]
@@ -132,13 +117,13 @@ def test_weights_are_the_mean_of_their_distribution(names, groups, sizes, few, h
         assert (of_plays(g, regression.scale, [B] * len(terms)) == 0).all()
 
 
-def test_the_chance_of_a_common_cause_is_bartletts(sessions):
-    regression = Regression(sessions[:2])
+def test_the_chance_of_a_common_cause_is_bartletts(with_gap):
+    regression = Regression(with_gap[:2])
     fit = regression.fit([A])
     left, chances = regression.left([A], fit), {}
     for lowest in (3, 6, 12, 24):
         rows = []
-        for own, s in zip(left, sessions):
+        for own, s in zip(left, with_gap):
             colour = [dense.spectrum(dense.SHAPES[g], s.blocks) for g in fit.base.best]
             rows.append((own / np.sqrt(colour).T)[:lowest])
         rows = np.vstack(rows)
@@ -151,13 +136,13 @@ def test_the_chance_of_a_common_cause_is_bartletts(sessions):
     assert covariance == pytest.approx(low.T @ low / len(low))
 
 
-def test_turned_axes_have_equal_white_noise_and_the_first_is_along_what_is_common(sessions):
-    regression = Regression(sessions[:2])
+def test_turned_axes_have_equal_white_noise_and_the_first_is_along_what_is_common(with_gap):
+    regression = Regression(with_gap[:2])
     axes = turned_axes(regression, [A])
     white = np.diag(regression.fit([A]).base.variance)
     assert axes @ white @ axes.T == pytest.approx(np.eye(3), abs=1e-9)
     _, covariance = coherence(regression, [A])
     spread = np.diag(axes @ covariance @ axes.T)
     assert spread[0] >= spread[1] >= spread[2] > 0
-    alike = replace(sessions[0], rate_dps=np.zeros_like(sessions[0].rate_dps))
+    alike = replace(with_gap[0], rate_dps=np.zeros_like(with_gap[0].rate_dps))
     assert (turned_axes(Regression([alike]), [A]) == np.eye(3)).all()

@@ -10,32 +10,17 @@ from zerorate_tools.loop.fit.regression import Regression, predicted
 from zerorate_tools.model.term import Term
 
 from . import dense
-from .dense import A, B, C, D
+from .dense import SCALE, A, B, C, D
 from .selections import step
 
-SCALE = np.array([[0.5, 1.0, 1.0], [1.0, 1.0, 2.0], [2.0, 1.0, 0.5]])
+
+def problems(with_gap, terms):
+    return [dense.problem(with_gap, terms, SCALE[:, a]) for a in range(3)]
 
 
-@pytest.fixture(scope="module")
-def sessions():
-    """Two whole ones, and one with a gap too long to be bridged."""
-    return [dense.made(1, 18), dense.made(2, 21), dense.made(3, 24, gap=range(5, 17))]
-
-
-@pytest.fixture
-def regression(sessions):
-    made = Regression(sessions)
-    made.scale = SCALE
-    return made
-
-
-def problems(sessions, terms):
-    return [dense.problem(sessions, terms, SCALE[:, a]) for a in range(3)]
-
-
-def test_a_fit_is_that_of_generalised_least_squares_under_every_colour(regression, sessions):
+def test_a_fit_is_that_of_generalised_least_squares_under_every_colour(regression, with_gap):
     fit = regression.fit([A, B])
-    for a, p in enumerate(problems(sessions, [A, B])):
+    for a, p in enumerate(problems(with_gap, [A, B])):
         likely, told, squares, inverse = dense.fitted(p, a)
         constant = fit.base.loglik[a] - likely
         assert constant == pytest.approx(np.zeros(len(likely)), abs=1e-5)
@@ -50,13 +35,13 @@ def test_a_fit_is_that_of_generalised_least_squares_under_every_colour(regressio
     assert fit.total == pytest.approx(sum(fit.base.loglik.max(axis=1)))
 
 
-def test_a_candidate_s_ratio_is_twice_what_the_likelihood_gains(regression, sessions):
+def test_a_candidate_s_ratio_is_twice_what_the_likelihood_gains(regression, with_gap):
     candidates = [(C,), (D,), (C, D), (B,), (A,)]
     found = regression.gains([A, B], candidates, chunk=2)
     for k, more in enumerate([(C,), (D,), (C, D)]):
         for a in range(3):
             before, after = (
-                dense.fitted(problems(sessions, terms)[a], a)[0].max()
+                dense.fitted(problems(with_gap, terms)[a], a)[0].max()
                 for terms in ([A, B], [A, B, *more])
             )
             assert found[k, a] == pytest.approx(2 * (after - before), rel=1e-4, abs=1e-6)
@@ -64,8 +49,8 @@ def test_a_candidate_s_ratio_is_twice_what_the_likelihood_gains(regression, sess
     assert np.abs(found[3:]).max() < 1e-6
 
 
-def test_two_columns_all_but_alike_gain_what_one_of_them_does(regression, sessions):
-    for s in sessions:
+def test_two_columns_all_but_alike_gain_what_one_of_them_does(regression, with_gap):
+    for s in with_gap:
         s.sources["twin"] = s.sources["c"] * (1 + 1e-9)
     one, both = regression.gains([A], [(C,), (C, Term("twin"))])
     assert both == pytest.approx(one, rel=1e-3, abs=1e-6)
@@ -125,11 +110,11 @@ def test_whitened_columns_that_are_known_are_given_again_and_no_more_are_kept_th
         assert len(w._known) <= 3
 
 
-def test_what_an_earlier_step_took_is_a_nuisance_of_its_session(sessions):
-    stepped = replace(sessions[1], steps=(step(9),))
+def test_what_an_earlier_step_took_is_a_nuisance_of_its_session(with_gap):
+    stepped = replace(with_gap[1], steps=(step(9),))
     behind = (np.arange(21) >= 9)[:, None]
     plain, moved = (
-        Regression([sessions[0], replace(stepped, rate_dps=stepped.rate_dps + dps * behind)])
+        Regression([with_gap[0], replace(stepped, rate_dps=stepped.rate_dps + dps * behind)])
         for dps in (0.0, 5.0)
     )
     fit = plain.fit([A])
@@ -159,10 +144,10 @@ def test_turned_axes_are_turned_back_and_coefficients_are_of_the_sensor(regressi
     assert regression.y[0] == pytest.approx(regression.whiteners[0].prepare(rate))
 
 
-def test_what_is_left_is_what_the_columns_do_not_hold(regression, sessions):
+def test_what_is_left_is_what_the_columns_do_not_hold(regression, with_gap):
     fit = regression.fit([A, B])
     left = regression.left([A, B], fit)
-    for i, s in enumerate(sessions):
+    for i, s in enumerate(with_gap):
         model = predicted([A, B], fit.coefficients, s)
         assert model == pytest.approx(
             np.column_stack([s.sources["a"], s.sources["b"]]) @ fit.coefficients
