@@ -78,15 +78,6 @@ POOL = [
 ]
 
 
-def test_the_shares_of_a_family_are_by_weight_and_add_up(sessions):
-    testing = MultipleTesting(Regression(sessions), POOL, (), (), False)
-    shares = {c.kind: testing.grid(c.kind) / testing.tried(c) for c in POOL}
-    assert shares == pytest.approx(
-        {"time-drift": 6 / 9, "vibration": 1 / 9, "thermal-lag": 1 / 9, "two": 1 / 9, "channel": 1}
-    )
-    assert testing.grid("vibration") == testing.grid("two") == 1.0
-
-
 @pytest.mark.parametrize("power_ons", [True, False])
 def test_what_follows_time_is_asked_other_questions_where_it_can_come_again(sessions, power_ons):
     testing = MultipleTesting(Regression(sessions), [*POOL, DRIFT], (), (), power_ons)

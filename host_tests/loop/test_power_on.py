@@ -7,7 +7,7 @@ import pytest
 from zerorate_tools.layout import AXIS
 from zerorate_tools.loop.motion.scales_and_timing import InMotion
 from zerorate_tools.loop.read.earth import Earth
-from zerorate_tools.loop.verify.firmware import Firmware, Refused, at_once, rows
+from zerorate_tools.loop.verify.firmware import Firmware, Refused, rows
 from zerorate_tools.loop.verify.power_on import BlockMeans, ideal_dps, turn_on
 from zerorate_tools.model import Slot, drafted
 from zerorate_tools.model.term import Term
@@ -194,7 +194,3 @@ def test_a_model_is_subtracted_by_the_device_that_holds_it_channel_by_channel(tm
         Firmware(replace(MPU, gyro_lsb_per_dps=65.5), model, ("volt",))
     with pytest.raises(Refused, match="cannot run at these scales"):
         Firmware(replace(MPU, odr_hz=1e9), None)
-
-
-def test_all_are_run_and_what_they_return_is_in_their_order():
-    assert at_once([lambda x: x + 1, lambda x: x * 10, lambda x: -x], 4) == [5, 40, -4]
