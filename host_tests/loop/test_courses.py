@@ -124,6 +124,15 @@ def test_where_few_were_fitted_pieces_of_them_are_left_out_too(few, single, insi
     assert run_kernels._inside(SimpleNamespace(train=train, few=few, single=single)) == inside
 
 
+def test_pieces_of_a_recording_are_fitted_with_the_others_that_were_fitted(monkeypatch):
+    monkeypatch.setattr(run_kernels, "PiecesByKernels", lambda p, scales, *of, **how: (of, how))
+    monkeypatch.setattr(run_kernels, "PieceRuns", lambda pieces, *of: pieces)
+    a, b, c = train = [SimpleNamespace(name=name) for name in "abc"]
+    analysis = SimpleNamespace(train=train, single=False, selection=None, motion=InMotion())
+    told = run_kernels._by_pieces(analysis, SimpleNamespace(session=b), MPU)
+    assert told == (([a, c],), {"shrunk": True})
+
+
 def test_models_are_none_those_of_the_first_effects_and_the_whole_one(supplied):
     analysis = analysed(supplied, found(VOLTS), found(WARM))
     whole = model_of(analysis, MPU)

@@ -78,8 +78,9 @@ def _grows(selection: Selection, errors: np.ndarray, without) -> np.ndarray:
 
     errors: (1 + effects, 3) with the first so many; without: as for `without_harmful`.
     """
-    used = np.array([f.axes for f in selection.found], bool).reshape(-1, 3)
-    grows = np.where(used, errors[1:] - errors[:-1], 0.0)
+    grows = errors[1:] - errors[:-1]
+    used = np.array([f.axes for f in selection.found], bool).reshape(grows.shape)
+    grows = np.where(used, grows, 0.0)
     for i in range(len(grows) - 1):
         needed = (grows[i] > 0) & (errors[-1] <= errors[i])
         if needed.any():
