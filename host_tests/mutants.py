@@ -101,7 +101,7 @@ AREAS = {
         ["firmware/test_" + name for name in (
             "corrector.py", "checked.py", "bursts.py", "published.py", "documents.py",
             "sources_together.py", "estimators.py", "motion_fit.py", "turn_on.py",
-            "machine_code_by_hand.py")]
+            "machine_code_by_hand.py", "guard.py")]
         + [KNOWN, GOLDEN, _FIGURES + "[settings]", _FIGURES + "[watched]"]
         + [_FIGURES + "[arithmetic]"],
     ),
