@@ -27,13 +27,17 @@ BIAS_DPS = (0.31, -0.19, 0.08)
 
 
 class CountedFile(FileStorage):
-    """A file that notes when it was written, by a board's clock."""
+    """A file that notes when it was written, by a board's clock, and may have no room."""
+
+    full = False
 
     def __init__(self, path, clock):
         super().__init__(path)
         self.clock, self.writes_us = clock, []
 
     def write_pieces(self, offset, pieces):
+        if self.full:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
         super().write_pieces(offset, pieces)
         self.writes_us.append(self.clock.now_us)
 
@@ -145,6 +149,18 @@ def test_a_bus_that_cannot_be_opened_says_what_to_do_about_it(board, number, do)
     service.step()
     (line,) = board.said
     assert line.startswith(f"bus: /dev/i2c-7: {os.strerror(number)}; ") and do in line
+
+
+@pytest.mark.parametrize("stays_full, end", [(True, "what was learned is lost"), (False, "kept")])
+def test_a_file_that_cannot_be_written_is_named_and_tried_again_at_the_end(board, stays_full, end):
+    board.file.full = True
+    board.live(20)
+    board.file.full = stays_full
+    board.service._keep_at_the_end()
+    _, refused, last = board.said
+    assert refused.startswith(f"{board.file.path}: cannot be written; free space on its disk")
+    assert "trying again every minute" in refused
+    assert last.startswith(board.file.path if stays_full else "kept") and end in last
 
 
 def test_restarts_write_once_an_hour_at_most_whatever_ends_them(tmp_path):

@@ -82,6 +82,7 @@ class Service:
         self._newest_us: int | None = None
         self._published_us: int | None = None
         self._said_lost = False
+        self._is_refused = False
         self._told_us: int | None = None
 
     def step(self) -> None:
@@ -131,9 +132,9 @@ class Service:
                 sink.close()
 
     def _keep_at_the_end(self) -> None:
-        if self._schedule.is_due(self._now_s()):
+        if self._is_refused or self._schedule.is_due(self._now_s()):
             kept = self._store.save()
-            self.system.say("kept what was learned" if kept else "what was learned is lost")
+            self.system.say("kept what was learned" if kept else self._refused("is lost"))
         elif self._schedule.is_significant(self._bias_lsb):
             self.system.say("what was learned since the last write, within the hour, is not kept")
         else:
@@ -225,9 +226,16 @@ class Service:
             return
         saves = self._schedule.saves
         kept = self._schedule.offer(learner.state, self._bias_lsb, self._now_s())
-        if not kept and self._schedule.saves > saves:
+        if self._schedule.saves == saves:
+            return
+        self._is_refused = not kept
+        if not kept:
             self._schedule.written_at(self._now_s() - self._schedule.interval_s + _RETRY_S)
-            self.system.say("what was learned cannot be written; trying again in a minute")
+            self.system.say(self._refused("is not kept yet; trying again every minute"))
+
+    def _refused(self, so: str) -> str:
+        do = "free space on its disk, or let this user write it"
+        return f"{self.system.storage.path}: cannot be written; {do}; what was learned {so}"
 
     def _publish(self, raw_lsb: "array[int]") -> None:
         imu, sample, learner = self._imu, self._sample, self._corrector.corrector
