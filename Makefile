@@ -109,8 +109,12 @@ lock: $(VENV)/.dev  ## resolve the lock files again
 	$(BIN)/$(COMPILE) pyproject.toml --all-extras -c requirements/tools.txt -o requirements/dev.txt
 	$(BIN)/$(COMPILE) requirements/node.in -o requirements/node.txt
 
-wheel: $(VENV)/.dev  ## dist/*.whl and dist/*.tar.gz
-	$(BIN)/python -m zerorate_tools.kernels.library
+$(VENV)/.build: requirements/dev.txt | $(BIN)/python
+	$(PIP) -c requirements/dev.txt hatchling numpy pyarrow ziglang
+	touch $@
+
+wheel: $(VENV)/.build  ## dist/*.whl and dist/*.tar.gz
+	PYTHONPATH=tools:firmware:drivers $(BIN)/python -m zerorate_tools.kernels.library
 	$(BIN)/python -m hatchling build -d dist
 
 clean:

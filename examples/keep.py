@@ -47,5 +47,8 @@ while True:
     if learner.learned:  # and not of this rest alone
         for axis in range(3):
             bias_lsb[axis] = round(learner.bias_lsb(axis))
+    saves = schedule.saves
     if schedule.offer(learner.state, bias_lsb, elapsed_ms // 1000):
         print("kept")
+    elif schedule.saves > saves:
+        print("learned.bin: cannot be written; is there room?")

@@ -95,6 +95,10 @@ class TestOnABoard:
         second = run("keep.py", {"learned.bin": first.files["learned.bin"]}, interrupt=-1)
         assert second.stdout.splitlines()[:2] == ["found: MPU-6050", "loaded"], second.stderr
 
+    def test_what_cannot_be_kept_is_said_once_an_hour(self, run):
+        said = run("keep.py", {"learned.bin/in_its_place": b""}, interrupt=-1).stdout
+        assert said.splitlines()[2:] == ["learned.bin: cannot be written; is there room?"]
+
     def test_with_int_every_sample_is_corrected(self, run):
         printed = run("interrupt.py").stdout.splitlines()[1:]
         rates = [[float(word) for word in line.removesuffix(" dps").split()] for line in printed]
