@@ -148,12 +148,13 @@ def in_markdown(found: dict) -> str:
         "(D. Laidig et al., CC BY 4.0).",
     ]
     for number, limit in enumerate(LIMITS):
-        after = [r["after"] for r in found["others"].values() if r["group"] == number]
-        if after:
+        own = {n: r["after"] for n, r in found["others"].items() if r["group"] == number}
+        if own:
+            after = list(own.values())
             met = "yes" if np.median(after) <= limit else "NO"
             parts.append(
-                f"Group {number + 1}, fitted on its other trials: median {np.median(after):.2f} "
-                f"degrees, must be at most {limit}: {met}."
+                f"Group {number + 1}, {', '.join(own)}, each fitted on the others: median "
+                f"{np.median(after):.2f} degrees, must be at most {limit}: {met}."
             )
     groups = " and ".join(", ".join(g) for g in found["refused"])
     unsure = ", ".join(found["unsure"])

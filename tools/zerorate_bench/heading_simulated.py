@@ -198,7 +198,12 @@ def _of_kind(kind: str, rows: list[dict]) -> list[str]:
     ]
 
 
-_HEADS = ["motion", "deployed", "entries found", "95 %?", "within two sigma", "90 to 99 %?", "left"]
+_HEADS = [
+    *("motion", "devices that got a matrix"),
+    *("entries found", "found: at least 95 %"),
+    *("entries within two sigma of the truth", "within: 90 to 99 %"),
+    "heading loss that is left",
+]
 _MORE = ["devices", "how many", "at most", "met"]
 _INTRODUCTION = """\
 # Heading in simulated motion, measured
@@ -209,5 +214,6 @@ Scale factors are off by 0.3 to 2 %. Cross-axis terms reach 1 %. Axes are turned
 Each device has one recording of 5 to 60 minutes. It rests for 0 to 90 % of them. Its rate is 25 to
 400 Hz. A recording has at most 60,000 samples.
 
-Entries found counts those known to a third of their size. Left is the part of the lost heading that
-stays, a median."""
+An entry is one of the nine of a matrix. The entries counted are those whose sigma is below a third
+of their size. An entry is found if the matrix that a device got has it. Heading loss that is left
+is a share of the loss without a matrix, a median of the devices that got one."""
