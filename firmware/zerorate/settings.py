@@ -75,7 +75,7 @@ _ONE_G = const(57)
 _QUIETEST_Q8 = const(58)
 _SETTINGS_WORDS = const(59)
 # layout: end
-# at rest the slope of gravity has at most this times its variance by noise: chi squared of 3 is 15
+# most squared slope of gravity by noise at rest, over its variance, three axes (chi squared: 15)
 _TILT_NOISE = const(5)
 _QUIETEST_DPS = 0.005  # of an axis: 2 mdps a root hertz through a filter of 5 Hz
 # What a user may set, in its unit. A time of readings is that many at the output data rate.

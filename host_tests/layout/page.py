@@ -179,7 +179,8 @@ To change a default, edit `DEFAULTS` there and run `make layout`.
 _FIXED = """## Fixed constants
 
 These stand in `firmware/zerorate/rest/stillness.py`, beside the rules by which a window is still
-and its temperature is followed:
+and its temperature is followed. A mean is that of a window; its variance is that of a sample over
+the number of samples, three axes added.
 """
 
 

@@ -59,18 +59,18 @@ _SHAKEN = const(4)
 _SHIFTED = const(5)
 _SILENT = const(6)
 # layout: end
-_FAR_LSB = const(512)  # a reading farther than that from the window's first is motion:
+_FAR_LSB = const(512)  # a reading this many LSB from the window's first one is motion
 _MOST_SEGMENTS = const(0x3FFF)
 _MOST_G = const(0x7FF)
 _MOST_HIDDEN_Q4 = const(0x7FFFF)
-_FAR_BITS = const(10)  # of ten bits the squares of a window fit 31
-_BANKED = const(9)  # times the usual turn: g tan(bank) over an aircraft's 60 m/s, in deg/s
-# by how much of a window's variance noise alone lets two of them differ
-_GRAVITY_NOISE = const(18)  # the mean accelerations: 27 by chi squared of 3, for noise is coloured
-_FAR_Q8 = const(0x7FFFF)  # a temperature so far from the line begins a new one
-_SMOOTHED = const(30)  # windows that a temperature is smoothed over
-_NOISY_Q8 = const(192)  # half an LSB of noise an axis: a window of it is never all alike
-_RATE_NOISE = const(14)  # the mean rate of an axis: 2 / 3 x (4.5 sigma)^2
+_FAR_BITS = const(10)  # log2 of twice FAR_LSB: the sum of a window's squares then fits 31 bits
+_BANKED = const(9)  # turn of an aircraft at 60 m/s, banked by 45 degrees, over turning_dps
+# a mean's variance: of a window's, three axes added; 18 is a chi squared of 27, 14 is 4.5 sigma
+_GRAVITY_NOISE = const(18)  # most squared change of gravity by noise, over a mean's variance
+_FAR_Q8 = const(0x7FFFF)  # LSB in 1/256: a temperature farther from its line begins a new line
+_SMOOTHED = const(30)  # the temperature is smoothed over at most this many windows
+_NOISY_Q8 = const(192)  # LSB^2 in 1/256, three axes: a part this noisy gives no constant window
+_RATE_NOISE = const(14)  # most squared change of an axis' rate by noise, over a mean's variance
 
 
 def gather(s: ptr32, c: ptr32, x: ptr32) -> int:
