@@ -57,8 +57,9 @@ def test_it_runs_on_an_emulated_chip_with_a_model_that_fits_and_keeps_its_state(
         ("fake: --socket no/imu.sock", "zerorate: no: no such folder; make it, or name"),
         ("fake: --state mine.csv", "zerorate: mine.csv: "),
         ("fake: --state .", "zerorate: .: "),
-        ("fake: --model none.bin", "zerorate: none.bin: No such file"),
-        ("fake: --hz 25 --model model.bin", "zerorate: --model: .*other scales"),
+        ("fake: --model none.bin", "zerorate: none.bin: no such file; name a model"),
+        ("fake: --hz 25 --model model.bin", "zerorate: model.bin: .*other scales; name another"),
+        ("fake: --model mine.csv", "zerorate: mine.csv: this is no effect model; name another"),
     ],
 )
 def test_what_it_cannot_run_with_is_one_line_and_stays_as_it_is(tmp_path, words, said):

@@ -209,7 +209,7 @@ def serving(stands_in, monkeypatch):
 
 def test_run_serves_lines_unless_told(serving, capsys):
     assert cli.main(["run", "7"]) == 0
-    system, sinks, model = serving.service.call_args.args
+    system, sinks, model, _ = serving.service.call_args.args
     assert sinks == ["Lines"] and model == b"" and not serving.FakeBus.called
     assert system.open_imu() == "imu" and serving.linux.call_args.args == ("/dev/i2c-7",)
     assert serving.imu.call_args == call(serving.bus)  # which has the defaults
@@ -225,8 +225,8 @@ def test_run_is_given_what_was_typed(serving):
     words = "--address 0x69 --hz 50 --dps 500 --g 8 --dlpf-hz 20 --part mpu6500 --model m.bin"
     words += " --udp h:1 --metrics h:2 --socket s --remote"
     assert cli.main(["run", "fake:", *words.split()]) == 0
-    system, sinks, model = serving.service.call_args.args
-    assert sinks == ["Datagrams", "Metrics", "UnixSocket"] and model == b"model"
+    system, sinks, *model = serving.service.call_args.args
+    assert sinks == ["Datagrams", "Metrics", "UnixSocket"] and model == [b"model", "m.bin"]
     assert serving.Datagrams.call_args == call("h:1", True)
     assert serving.Metrics.call_args == call("h:2", True)
     assert serving.FakeBus.call_args == call(address=0x69, part="mpu6500")

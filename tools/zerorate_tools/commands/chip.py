@@ -262,7 +262,7 @@ def run_run(arguments: argparse.Namespace) -> None:
     # systemd ends a service with SIGTERM; Ctrl-C and it do the same
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     system = System(open_imu, storage, clock, say, stored_ago_s=stored_ago_s)
-    Service(system, sinks or [Lines(sys.stdout)], model).run()
+    Service(system, sinks or [Lines(sys.stdout)], model, str(arguments.model)).run()
 
 
 def _require_settings(options: dict[str, Any]) -> None:
@@ -288,8 +288,10 @@ def _require_settings(options: dict[str, Any]) -> None:
 
 def _model_bytes(path: Path) -> bytes:
     """The bytes of model.bin, which need no library; those of its readable twin need tools."""
+    from ..bounds import bytes_of
+
     if path.suffix != ".json":
-        return path.read_bytes()
+        return bytes_of(path, "name a model.bin or model.json")
     from ..model import encoded, read_model
 
     return encoded(read_model(path))

@@ -17,13 +17,14 @@ from zerorate.storage.reasons import REASONS
 from zerorate.storage.save_schedule import SaveSchedule
 from zerorate_i2c.fifo import EMPTY, Fifo
 
-from ..errors import ZerorateError, os_error_in_words
+from ..errors import InFile, os_error_in_words
 from .publish import Sink
 
 _LEAST_PAUSE_MS = 10
 _BUS_PAUSE_MS = 1000
 _ALIVE_US = 2_000_000
 _RETRY_S = 60
+_OTHER_MODEL = "name another model, or leave out --model"
 _TOLERANCE_LSB = 1  # 0.008 dps in the finest range
 
 
@@ -62,13 +63,19 @@ class Service:
     not told, `lost` of each sink its lines. sinks: where lines go. Each has `t_us` since the start,
     `rate_dps` without bias, `raw_dps` as the chip has it, `bias_dps`, `accel_g`, `temp_degc`, and
     `gap_us` since the line before where samples are missing between the two. model: bytes of an
-    effect model, used where it fits.
+    effect model, used where it fits; model_name: its file's, for an error.
     """
 
-    def __init__(self, system: System, sinks: Sequence[Sink], model: bytes = b"") -> None:
+    def __init__(
+        self,
+        system: System,
+        sinks: Sequence[Sink],
+        model: bytes = b"",
+        model_name: str = "model.bin",
+    ) -> None:
         self.system = system
         self.sinks = sinks
-        self._model = model
+        self._model, self._model_name = model, model_name
         self.bus_failures = 0
         self.notify_failures = 0
         self.samples = 0
@@ -187,17 +194,18 @@ class Service:
             self._schedule.written_at(self._now_s() - int(ago_s))
 
     def _use_model(self, learner: Corrector) -> None:
-        """Subtract what the model says. Raises ZerorateError where it is of another device."""
+        """Subtract what the model says. Raises InFile where it is of another device."""
         from zerorate.effects.model_file import REASONS as MODEL_REASONS
         from zerorate.model import EffectModel
 
         effects = EffectModel()
         reason = effects.load(self._model, learner.sensor, self._binding)
         if reason != LOADED:
-            raise ZerorateError(f"--model: {MODEL_REASONS[reason]}")
+            raise InFile(self._model_name, MODEL_REASONS[reason], do=_OTHER_MODEL)
         if effects.channels:
             names = ", ".join(effects.channels)
-            raise ZerorateError(f"--model: it follows the channel {names}, not here")
+            problem = f"it follows the channel {names}, which is not here"
+            raise InFile(self._model_name, problem, do=_OTHER_MODEL)
         learner.use_model(effects)
 
     def _lose(self, error: OSError) -> None:
