@@ -86,6 +86,7 @@ def ended_alone(words, folder):
         (["state", "show", "/dev/zero"], "zero: is no file"),
         (["flash", "none", "--dry-run", "--main", "/dev/zero"], "zero: is no file"),
         (["flash", "file:///x", "--with", "rest"], "file:///x: is not there"),
+        (["watch", "fake:", "--own"], "fake: is an emulated chip without a board; name a board's"),
         (["record", "none", "--out", "o.csv", "--setup", "fifo"], "fifo: is no file"),
         (["record", "fake:", "--out", "o.csv", "--seconds", "nan"], "nan is no finite number"),
         (["record", "fake:", "--out", "o.csv", "--seconds", "0"], "0 is not above 0"),

@@ -58,7 +58,7 @@ def connected(port: str, go_on: bool = True) -> Iterator:
     try:
         transport = SerialTransport(port, timeout=2)
     except (TransportError, OSError, ValueError) as error:  # the last: a URL of no known kind
-        raise BoardError(f"{port}: {_why_closed(port)}") from error
+        raise BoardError(_why_closed(port)) from error
     try:
         _stop(transport)
         yield transport
@@ -82,7 +82,7 @@ def listening(port: str) -> Iterator:
     try:
         serial = Serial(port, 115200, timeout=0.2, exclusive=True)
     except (OSError, ValueError) as error:
-        raise BoardError(f"{port}: {_why_closed(port)}") from error
+        raise BoardError(_why_closed(port)) from error
     with serial:
         yield serial
 
@@ -103,16 +103,18 @@ def _stop(transport) -> None:
 
 def _why_closed(port: str) -> str:
     """Why a port cannot be opened, which mpremote does not tell, and what to do."""
+    if port == "fake:":
+        return "fake: is an emulated chip without a board; name a board's port, as /dev/ttyACM0"
     from serial import Serial
 
     try:
         Serial(port, exclusive=True).close()
     except (OSError, ValueError) as error:
         if (code := getattr(error, "errno", None)) in _CLOSED:
-            return _CLOSED[code]
+            return f"{port}: {_CLOSED[code]}"
         what = "is no serial port" if Path(port).exists() else "is not there"
-        return f"{what}; {_plugged_in()}"
-    return "could not be opened a moment ago; try again"
+        return f"{port}: {what}; {_plugged_in()}"
+    return f"{port}: could not be opened a moment ago; try again"
 
 
 def _plugged_in() -> str:
