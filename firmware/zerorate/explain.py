@@ -30,7 +30,7 @@ FAULTS = (
     "frames of all ones",
     "jumps of the temperature",
     "frames at a time that stood still",
-    "frames after a leap of time",
+    "frames after missed samples",
 )
 # layout: What a window was
 _STILL = const(1)

@@ -36,7 +36,7 @@ FAULTS = {
         *(guard.TIME_STOOD_STILL, "frames at a time that stood still", lambda x, t: t.fill(-9)),
     ),
     "time leaps": (
-        *(guard.TIME_LEAPT, "frames after a leap of time", lambda x, t: t.fill(60_000_000)),
+        *(guard.TIME_LEAPT, "frames after missed samples", lambda x, t: t.fill(60_000_000)),
     ),
 }
 faults = pytest.mark.parametrize(("kind", "words", "fault"), FAULTS.values(), ids=FAULTS)

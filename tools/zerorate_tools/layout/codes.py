@@ -13,7 +13,7 @@ GUARD = Codes(
         "ALL_ONES": "frames of all ones",
         "TEMPERATURE_JUMP": "jumps of the temperature",
         "TIME_STOOD_STILL": "frames at a time that stood still",
-        "TIME_LEAPT": "frames after a leap of time",
+        "TIME_LEAPT": "frames after missed samples",
     },
 )
 STILLNESS = Codes(
