@@ -8,11 +8,7 @@ from scipy.stats import chi2
 from zerorate_tools.loop.fit import shrunk as shrinking
 from zerorate_tools.loop.fit.common_cause import coherence, turned_axes
 from zerorate_tools.loop.fit.free_curve import parts
-from zerorate_tools.loop.fit.left_out import (
-    gains,
-    of_plays,
-    precision_of,
-)
+from zerorate_tools.loop.fit.left_out import gains, of_plays, precision_of
 from zerorate_tools.loop.fit.regression import Regression
 from zerorate_tools.model.term import Term, play
 

@@ -14,8 +14,8 @@ from .dense import SCALE, A, B, C, D
 from .selections import step
 
 
-def problems(with_gap, terms):
-    return [dense.problem(with_gap, terms, SCALE[:, a]) for a in range(3)]
+def problems(sessions, terms):
+    return [dense.problem(sessions, terms, SCALE[:, a]) for a in range(3)]
 
 
 def test_a_fit_is_that_of_generalised_least_squares_under_every_colour(regression, with_gap):
@@ -36,17 +36,15 @@ def test_a_fit_is_that_of_generalised_least_squares_under_every_colour(regressio
 
 
 def test_a_candidate_s_ratio_is_twice_what_the_likelihood_gains(regression, with_gap):
-    candidates = [(C,), (D,), (C, D), (B,), (A,)]
-    found = regression.gains([A, B], candidates, chunk=2)
-    for k, more in enumerate([(C,), (D,), (C, D)]):
-        for a in range(3):
-            before, after = (
-                dense.fitted(problems(with_gap, terms)[a], a)[0].max()
-                for terms in ([A, B], [A, B, *more])
-            )
-            assert found[k, a] == pytest.approx(2 * (after - before), rel=1e-4, abs=1e-6)
-    # what is fitted already, or is nothing, gains nothing
-    assert np.abs(found[3:]).max() < 1e-6
+    def likeliest(*terms):
+        each = enumerate(problems(with_gap, [A, B, *terms]))
+        return np.array([dense.fitted(p, a)[0].max() for a, p in each])
+
+    more = [(C,), (D,), (C, D)]
+    found = regression.gains([A, B], [*more, (B,), (A,)], chunk=2)
+    expected = [2 * (likeliest(*terms) - likeliest()) for terms in more]
+    assert found[:3] == pytest.approx(np.array(expected), rel=1e-4, abs=1e-6)
+    assert np.abs(found[3:]).max() < 1e-6  # what is fitted already gains nothing
 
 
 def test_two_columns_all_but_alike_gain_what_one_of_them_does(regression, with_gap):
@@ -156,21 +154,23 @@ def test_what_is_left_is_what_the_columns_do_not_hold(regression, with_gap):
         assert left[i] == pytest.approx(own)
 
 
-def test_squares_of_acceleration_are_shrunk_by_a_thousandth_and_told_weights_by_their_precision():
+@pytest.mark.parametrize("square_at", [0, 1])
+def test_squares_of_acceleration_are_shrunk_by_a_thousandth(square_at):
     session = dense.made(5, 30, names=("acc_x", "b"))
-    square, linear = Term("acc_x", power=2), Term("acc_x")
-    for terms in ([square, linear, B], [linear, square, B]):
-        g = Regression([session]).cross_products(terms)
-        p = dense.problem([session], [linear, B])
-        own = dense.contrasts(session).T @ session.sources["acc_x"] ** 2
-        at = terms.index(square)
-        expected = [own @ np.linalg.inv(v) @ own for v in p.v]
-        assert g.zz[0, :, at, at] == pytest.approx(1.001 * np.array(expected), rel=1e-7)
-    two = Regression([session, session])
-    plain = Regression([session, session]).cross_products([B])
+    terms = [Term("acc_x"), B]
+    p = dense.problem([session], terms)
+    own = dense.contrasts(session).T @ session.sources["acc_x"] ** 2
+    terms.insert(square_at, Term("acc_x", power=2))
+    told = Regression([session]).cross_products(terms).zz[0, :, square_at, square_at]
+    assert told == pytest.approx(1.001 * np.array([own @ np.linalg.inv(v) @ own for v in p.v]))
+
+
+def test_weights_that_are_told_are_shrunk_by_their_precision(with_gap):
+    two = Regression(with_gap[:2])
+    plain = two.cross_products([B])
     with two.shrinking({B: 6.0}):
         more = two.cross_products([B])
-        tried = two.cross_products([linear], [(B,), (square,)])
+        tried = two.cross_products([A], [(B,), (C,)])
     assert more.zz - plain.zz == pytest.approx(np.full_like(more.zz, 3.0))
     assert tried.xx[:, :, 0] == pytest.approx(more.zz)
 
