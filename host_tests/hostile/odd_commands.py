@@ -209,7 +209,7 @@ def left_badly(code, words, changed, new):
         yield f"changed {strange}"
     if code == 2 and not keeps and (changed or new):
         yield f"failed, and changed {sorted(changed)[:3]}, made {sorted(new)[:3]}"
-    if code == 0 and "--out" in words and not changed and not new:
+    if code == 0 and "--out" in words and ".." not in words and not changed and not new:
         yield "wrote nothing"
 
 

@@ -26,13 +26,14 @@ from zerorate_tools.replay.engines import (
 )
 from zerorate_tools.replay.plot import plot
 from zerorate_tools.replay.replaying import (
+    _count,
     can_be_a_state,
     corrector_for,
     load_model,
     state_bytes,
 )
 from zerorate_tools.replay.samples import frames_in_batches
-from zerorate_tools.replay.state_in_words import words_of_file
+from zerorate_tools.replay.state_in_words import Word, words_of_file
 from zerorate_tools.simulate import simulate
 
 from ..golden.shown import InThisProcess
@@ -206,3 +207,26 @@ def test_a_state_whose_last_word_is_cut_has_the_words_before(tmp_path):
     state = bytes(corrector_for(recording_from_columns({}, Scales("a", 100.0, 131.0)), {}).state)
     (tmp_path / "s.bin").write_bytes(state + b"\1\2")
     assert len(words_of_file(tmp_path / "s.bin")) == len(state) // 4
+
+
+@pytest.mark.parametrize(
+    ("name", "raw", "shown"), [("BIAS_Q8", -256, "-1 "), ("N", 3, ""), ("SCALE_Q8", 512, "2 ")]
+)
+def test_a_value_is_shown_where_it_is_not_the_raw_one(name, raw, shown):
+    assert Word("state", 0, name, raw, "").shown == shown
+
+
+@pytest.mark.parametrize("name", ["o.csv", "o.txt", "o"])
+def test_a_replay_is_written_as_parquet_alone(recording, name):
+    with pytest.raises(InFile, match="end the name in .parquet"):
+        replay(recording, name)
+
+
+def test_times_go_on_over_batches_and_verdicts_are_counted_over_them(recording):
+    steps = np.concatenate([f.dt_us for f in frames_in_batches(recording, 300)])
+    (whole,) = frames_in_batches(recording, 1000)
+    assert (steps == whole.dt_us).all()
+    counts = {}
+    for codes in (np.array([1, 1, 1, 0]), np.array([1, 3])):
+        _count(counts, ("a", "b", "c", "d"), codes)
+    assert counts == {"a": 1, "b": 4, "d": 1}
