@@ -53,4 +53,6 @@ while True:
         if learner.learned:  # and not of this rest alone
             for axis in range(3):
                 bias_lsb[axis] = round(learner.bias_lsb(axis))
-        schedule.offer(learner.state, bias_lsb, seconds)
+        saves = schedule.saves
+        if not schedule.offer(learner.state, bias_lsb, seconds) and schedule.saves > saves:
+            print("learned.bin: cannot be written; is there room? Trying again in an hour")

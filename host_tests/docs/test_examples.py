@@ -142,23 +142,37 @@ except KeyboardInterrupt:
 """
 
 
-def test_on_linux_it_goes_on_with_what_was_learned(repository, tmp_path):
+@pytest.fixture
+def power_on(repository, tmp_path):
+    """power_on(seconds) -> what the example printed, in a process that has its own clock."""
     pytest.importorskip("smbus2")
     example = str(repository / "examples" / "raspberry_pi.py")
 
-    def power_on(seconds):  # in a process of its own: it takes the clock of all that runs there
+    def power_on(seconds, **more):
         program = ON_LINUX.format(seconds=seconds, bias=BIAS_DPS, example=example)
         command = [sys.executable, "-c", program]
-        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, **more)
         assert done.stdout.endswith("ended\n"), done.stderr
         return done.stdout
 
+    return power_on
+
+
+def test_on_linux_it_goes_on_with_what_was_learned(repository, power_on):
     first, second = power_on(40), power_on(5)
     shown = snippets(repository, "raspberry-pi.md", "text")[-1]
     assert first.startswith(shown) and "bus: " in first
     takes_the_bias_off(first)
     assert second.startswith("loaded")
     assert rows(second)[0][3:] == pytest.approx([0, 0, 0], abs=0.02)
+
+
+def test_on_linux_a_full_disk_is_said_and_the_rates_go_on(power_on):
+    limits = pytest.importorskip("resource")  # no file may grow, which is not a pipe's business
+    full = limits.RLIMIT_FSIZE, (0, 0)
+    said = power_on(15, preexec_fn=lambda: limits.setrlimit(*full))
+    assert said.count("learned.bin: cannot be written; is there room?") == 1
+    takes_the_bias_off(said)
 
 
 def test_a_recording_without_a_chip_ends_with_the_line_of_the_page(
