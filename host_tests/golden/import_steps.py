@@ -73,14 +73,19 @@ def columns():
     for _ in range(500):
         first = _columns(luck)
         calendar = frozenset(n for n in first if luck.random() < 0.05)
-        said.append(" ".join(guesses.likely_columns(first, calendar)))
+        said.append(_likely(first, calendar))
     for _ in range(20):
         first = _turning(luck)
         first |= dict(zip("abc", luck.normal(0, 0.5, (3, 1500))))
         order = mostly(luck, "abc", (), ACCEL), GYRO, ACCEL, mostly(luck, ("t_us",), ()), "abc"
         names = dict.fromkeys(n for group in order for n in group if n in first)
-        said.append(" ".join(guesses.likely_columns({n: first[n] for n in names})))
+        said.append(_likely({n: first[n] for n in names}))
     return {"columns": [one for one in said if one], "none": [said.count("")]}
+
+
+def _likely(first, calendar=frozenset()):
+    chunks = [Chunk(np.arange(len(next(iter(first.values())))), first)]
+    return " ".join(guesses.likely_columns(Table([*first], lambda _: chunks, calendar=calendar)))
 
 
 def _turning(luck, rows=1500):

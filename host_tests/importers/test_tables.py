@@ -131,6 +131,8 @@ def test_a_line_that_is_no_row_keeps_its_place_in_blocks_of_any_size(
         rows[number] = rows[number].rpartition(",")[0]
     if checked:
         rows = [f"$IMU,{row}*{reduce(xor, f'IMU,{row}'.encode()):02X}" for row in rows]
+    else:
+        rows.insert(2, "# a comment")
     head = [] if checked else ["A note", "", "a,b,c"]
     (tmp_path / "in.csv").write_text("\n".join([*head, *rows, ""]))
     for reader in (checked_lines, delimited):
@@ -143,6 +145,7 @@ def test_a_line_that_is_no_row_keeps_its_place_in_blocks_of_any_size(
     values = np.concatenate([chunk.columns[name] for chunk in chunks])
     whole = [number for number in range(60) if number not in lost]
     assert places.tolist() == values.tolist() == whole and sum(found.dropped.values()) == len(lost)
+    assert checked or "not 3 cells (the first, row 4, has 2)" in found.dropped
 
 
 @pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16", "utf-16-le", "latin-1"])
@@ -157,6 +160,10 @@ ROWS = [f"{i / 100},{x:.4f},{y:.4f},{z:.4f}" for i, (x, y, z) in enumerate(THREE
 PRINTED = [str({"t": i / 100, "gyro": dict(zip("xyz", row.tolist()))})
            for i, row in enumerate(THREE)]  # fmt: skip
 TAGGED = ["{}" + " ".join(f"{n}={v:.4f}" for n, v in zip(RATES, row)) for row in THREE]
+YEI = ['# Data format: "%int(ChipTimeUS),%float(RawGyroX),%float(RawGyroY),%float(RawGyroZ)"',
+       *(f"{10_000 * i},{','.join(map(str, row))}" for i, row in enumerate(THREE))]  # fmt: skip
+OWN_UNIT = [str({"t_s": i / 100, "gyro": {"unit": "deg/s", "now": dict(zip("xyz", row.tolist()))}})
+            for i, row in enumerate(THREE)]  # fmt: skip
 SERIAL = ["=~= PuTTY log 2026.05.08 =~=", "08,0.8,0.9", *(f"25,{row}" for row in ROWS)]
 ESP = [f"\x1b[0;32mI ({320 + 10 * i}) imu: gx={r[0]} gy={r[1]} gz={r[2]}\x1b[0m"
        for i, r in enumerate(THREE)]  # fmt: skip
@@ -172,6 +179,8 @@ COUNTED, BY_NUMBER = Options(hz=100.0), "t_us=1:s gx=2:dps gy=3:dps gz=4:dps"
         (SERIAL, "temp=1:degc t_us=2:s gx=3:dps gy=4:dps gz=5:dps", None, 1),
         ([*PRINTED, PRINTED[0][:30]],
          "t_us=t:s gx=gyro.x:dps gy=gyro.y:dps gz=gyro.z:dps", None, 2),
+        (OWN_UNIT, "", None, 0),
+        (YEI, "gx=RawGyroX:dps gy=RawGyroY:dps gz=RawGyroZ:dps", None, 0),
         ([str(row.tolist()) for row in THREE], "gx=[0]:dps gy=[1]:dps gz=[2]:dps", COUNTED, 0),
         ([str(tuple(row)) for row in THREE.tolist()], "gx=[0]:dps gy=[1]:dps gz=[2]:dps", COUNTED,
          0),
@@ -180,7 +189,7 @@ COUNTED, BY_NUMBER = Options(hz=100.0), "t_us=1:s gx=2:dps gy=3:dps gz=4:dps"
         (["rst:0x1 (POWERON_RESET)", "I (28) boot: ESP-IDF v5.1", *ESP],
          "gx=gx:dps gy=gy:dps gz=gz:dps", None, 0),
     ],
-    ids="comments commented-head no-head serial dicts lists tuples tag clock-tag esp-idf".split(),
+    ids="comments commented-head no-head serial dicts unit yei lists tuples tag clock esp".split(),
 )  # fmt: skip
 def test_text_of_people_is_read(tmp_path, text, mapping, options, lost):
     recording, report = read(tmp_path, "\n".join(text), "in.log", mapping, options=options)
@@ -269,6 +278,15 @@ def test_usual_names_and_units_of_rates_are_known(tmp_path, name):
     assert recording.gyro_dps().mean() == pytest.approx(0.8, abs=0.02)
 
 
+@pytest.mark.parametrize(
+    ("name", "size"), [("accel_{}_ug", 1e6), ("Corrected Accelerometer Vector {} (g)", 1.0)]
+)
+def test_usual_names_and_units_of_forces_are_known(tmp_path, name, size):
+    force = {name.format(axis): table(300)[f"a{axis}_g"] * size for axis in "xyz"}
+    recording, _ = read(tmp_path, table(300)[HEAD.split(",")].assign(**force))
+    assert recording.accel_g().mean(axis=0) == pytest.approx([0, 0, 1], abs=0.01)
+
+
 @pytest.mark.parametrize(("unit", "dps"), [("dps", 1.0), ("rad/s", 57.29578)])
 def test_the_steps_of_a_chip_tell_the_unit_of_rates(tmp_path, unit, dps):
     counts = np.rint(131 * rates(["t_s", "gyro_x", "gyro_y", "gyro_z"], 300))
@@ -292,6 +310,8 @@ def test_columns_that_are_not_taken_are_offered(tmp_path):
     assert told(report, "left aside: temp_h, temp_cpu, volt; take one along as --map NAME=COLUMN")
     recording, report = read(tmp_path, frame, mapping="temp=temp_h vdd_mv=volt hot=temp_cpu")
     assert {"temp", "vdd_mv"} <= {*recording.columns} and not told(report, "left aside")
+    _, report = read(tmp_path, table(500).rename(columns={"temp_c": "T [C]"}))
+    assert told(report, "by its name, but T [C]: ") and told(report, "--map 'temp=T [C]'")
     _, report = read(tmp_path, table(500), mapping="temp=none")
     assert told(report, "no temperature: the bias")
 

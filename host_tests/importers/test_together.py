@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from scipy.io import savemat
 from zerorate_bench.foreign_imports import BY_ITS_WORDS, REFUSED, RIGHT, judged
 from zerorate_bench.foreign_logs import CORPUS
 from zerorate_bench.public_data import recordings, told_of
@@ -104,11 +105,31 @@ def test_files_of_sensors_without_rates_are_refused(tmp_path, sensors):
 def test_tables_without_names_or_times_say_what_they_lack(tmp_path, sensors):
     for sensor in sensors:
         sensor.write_text(sensor.read_text().partition("\n")[2])
-    with pytest.raises(BadRecording, match="gyro.csv: its columns have no names; write a line"):
-        import_recording(sensors, tmp_path / "o.csv")
+    bare = sensors[0].rename(tmp_path / "run.csv")
+    with pytest.raises(BadRecording, match="run.csv: its columns have no names; write a line"):
+        import_recording([bare, sensors[1]], tmp_path / "o.csv")
+    bare.rename(sensors[0])
     sensors[0].write_text("n,gx_dps,gy_dps,gz_dps\n" + sensors[0].read_text())
     with pytest.raises(BadRecording, match="no time stamps; give --map t_us=n:s"):
         import_recording(tmp_path, tmp_path / "o.csv")
+
+
+@pytest.mark.parametrize("ending", ["csv", "mat"])
+def test_sensors_without_names_are_told_by_those_of_their_files(tmp_path, ending):
+    at_s = np.arange(33_000) / 100
+    levels = {"my gyro": (0.8, 0.5, 0.3), "acc": (0.0, 0.0, 1.0), "temp": (25.0,)}
+    for name, of in levels.items():
+        rows = np.random.default_rng(4).normal((0.0, *of), 0.01, (len(at_s), len(of) + 1))
+        rows[:, 0] = at_s
+        if ending == "mat":
+            savemat(tmp_path / f"{name}.mat", {"rows": rows})
+        else:
+            np.savetxt(tmp_path / f"{name}.csv", rows, "%.4f", ",")
+    recording, report = read_foreign(tmp_path, units={"gyro": "dps"})
+    assert len(recording) == 33_000 and "interpolated" not in " ".join(report.lines())
+    means = *recording.gyro_dps().mean(axis=0), *recording.accel_g().mean(axis=0)
+    assert means == pytest.approx([0.8, 0.5, 0.3, 0, 0, 1], abs=0.01)
+    assert recording.temp_degc().mean() == pytest.approx(25, abs=0.1)
 
 
 def test_whole_recordings_are_not_put_into_one(tmp_path):

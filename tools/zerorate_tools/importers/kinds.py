@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ..errors import BadRecording
 from ..recordings.text import head
-from .tables.archive import archive, folder_of_tables, tables_of_sensors
+from .tables.archive import archive, folder_of_tables, tables_of_sensors, with_axes
 from .tables.checked_lines import checked_lines, has_checked_lines
 from .tables.delimited import delimited
 from .tables.table import Table
@@ -91,8 +91,8 @@ def _opened(advance: Callable[[float], None]) -> Iterator[Callable[[Path], Table
         def opened(file: Path) -> Table:
             reader = _reader(file)
             if reader in _OF_MATLAB:
-                return stack.enter_context(table_apart(reader, file, 0, advance))
-            return delimited(file, advance)
+                return with_axes(stack.enter_context(table_apart(reader, file, 0, advance)), file)
+            return with_axes(delimited(file, advance), file)
 
         yield opened
 

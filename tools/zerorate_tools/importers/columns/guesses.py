@@ -7,12 +7,13 @@ import numpy as np
 
 from ...recordings.recording import ACCEL, GYRO, TEMP, TIME
 from ...recordings.turning import Size, dps_of_one
+from ..tables.table import Table
 from .chip_steps import unit_by_steps
 from .mapping import Mapped
 from .names import spelled
-from .units import RATE_DPS, RAW, STANDARD_GRAVITY, TIME_S, factors_of, kind_of, unit_in_name
+from .units import ACCEL_G, RATE_DPS, RAW, TIME_S, factors_of, kind_of, unit_in_name
 
-GRAVITY = {"m/s2": STANDARD_GRAVITY, "g": 1.0, "mg": 1000.0}
+GRAVITY = {unit: 1.0 / in_g for unit, in_g in ACCEL_G.items()}
 _GRAVITY_WITHIN = 0.15
 #: Seconds since 1970 of the years 2001 and 2100.
 _CALENDAR_S = (1e9, 4.1e9)
@@ -25,6 +26,7 @@ _OF_ONE = 3e-4
 _LIKELY_HZ = (0.02, 40_000.0)
 #: Names of times in none of the units that a recording may have.
 _OTHER_TIME = re.compile(r"min|hour|hr|day|frame|tick|count")
+_TOGETHER = 64
 _PER_HOUR = re.compile(r"(?:deg|°)\w*\s*(?:/|per)\s*h")
 #: Where no time is known; of 25 Hz or 400 Hz rates in their usual units still have a size.
 _ANY_HZ = 20.0
@@ -119,22 +121,18 @@ def unit_words(wanted: Mapping[str, Mapped], target: str, unit: str) -> str:
     return f"--{kind_of(target)}-unit {unit}"
 
 
-def likely_columns(
-    first: Mapping[str, np.ndarray], calendar: frozenset[str] = frozenset()
-) -> list[str]:
+def likely_columns(table: Table) -> list[str]:
     """Words as of --map for columns that nothing names: what only grows is time, three whose length
     stays about gravity are acceleration, the next three are rates; [] where there are no three, or
-    where without gravity there are more. Numbers of a kind and quaternions are neither.
-
-    first: the first rows of every column, in the file's order; calendar: those that are dates.
-    """
+    where without gravity there are more. Words, numbers of a kind and quaternions are neither."""
+    first = table.first_rows([name for name in table.names if name not in table.words])
     values = {n: v for n, v in first.items() if 2 * np.isfinite(v).sum() > len(v)}
     whole = np.isfinite(list(values.values())).all(axis=0)
     if not whole.any():
         return []
     values = {name: column[whole] for name, column in values.items()}
-    times = [name for name in values if name in calendar]
-    times += [name for name in values if name not in calendar and only_grows(values[name])]
+    times = [name for name in values if name in table.calendar]
+    times += [name for name in values if name not in times and only_grows(values[name])]
     time = next(iter(times), None)
     out = [] if time is None else [f"t_us={time}:{likely_time(values[time])}"]
     rest = {n: values[n] for n in values if n not in times and _varies(values[n])}
@@ -146,7 +144,7 @@ def likely_columns(
     t_s = np.arange(whole.sum()) / _ANY_HZ
     if time is not None:
         t_s = (values[time] - values[time][0]) * TIME_S[likely_time(values[time])]
-    accel, unit, gyro = _by_values(rest, list(first), t_s)
+    accel, unit, gyro = _by_values(rest, table.names, t_s)
     usual = max((abs(float(np.median(values[name]))) for name in gyro), default=0.0)
     if not gyro or unit in RATE_DPS and usual * RATE_DPS[unit] > FASTEST_DPS:
         return []
@@ -324,7 +322,9 @@ def _by_pace(
 def _usual_step(values: np.ndarray) -> float:
     steps = np.diff(values[np.isfinite(values)])
     steps = np.abs(steps[steps != 0])  # two sensors at one time
-    return float(np.median(steps)) if len(steps) else 0.0
+    size = min(_TOGETHER, len(steps) // 4) or 1  # that come in bursts
+    means = steps[: len(steps) // size * size].reshape(-1, size).mean(axis=1)
+    return float(np.median(means)) if len(means) else 0.0
 
 
 def _time_words(values: np.ndarray) -> str:

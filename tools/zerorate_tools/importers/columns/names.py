@@ -19,7 +19,7 @@ _GYRO = re.compile(
 )
 _ACCEL = re.compile(
     r"(?:.*(?:accelerometer|acceleration|accel|acc|specificforce)"
-    rf"\d?{_CHIP}(?:uncalibrated|uncal|calibrated|smooth|adc|raw|data|ms2|m?g|values?|ln|wr|static"
+    rf"\d?{_CHIP}(?:uncalibrated|uncal|calibrated|smooth|adc|raw|data|ms2|m?g|values?|vector|ln|wr|static"
     r"|noise){0,2}"
     r"|(?:.*imu)?(?:ac?|gf))" + f"{_AXIS}{_MADE}{_NUMBER}$|^{_AXIS}(?:accelerometer|accel|acc)$"
 )
@@ -35,8 +35,10 @@ _NOT_THE_DIE = re.compile(
     r"ambient|air|baro|bmp|bme|aht|sht|cpu|processor|environment|motor|batt|esc|water|room"
 )
 _THE_DIE = re.compile("gyr|imu")
+#: Beside another time it may be one.
+_CAPITAL_T = re.compile("T(?![A-Za-z])")
 _TIME = re.compile(
-    r"(?:t|ts|times?|timestamps?|timestampsample|now|stamp|timeus|timems|secondselapsed|datetime|"
+    r"(?:t|ts|times?|timestamps?|timestampsample|now|stamp|.*time[mun]s|secondselapsed|datetime|"
     r"date|utc|milli(?:s|seconds)|micro(?:s|seconds)|loggingtime|.*timestamp(?:unix|sincereboot)?(?:cal)?|.*headerstamp|sampletime|"
     r"gpst|gpstime|tow|timeofweek|elapsed|elapsedtime|epoch?|.*offsettime|timestartup|timesincestart(?:in)?|rtctime|"
     r"(?:sys|gyro|imu)ts)$"
@@ -132,7 +134,7 @@ def other_temperatures(names: list[str]) -> list[str]:
     none where one is."""
     if temperature(names):
         return []
-    found = [name for name in names if re.search("temp|tmp", spelled(name))]
+    found = [n for n in names if re.search("temp|tmp", spelled(n)) or _CAPITAL_T.match(n)]
     found = [name for name in found if not unit_in_name("t_us", name)]
     return sorted(found, key=lambda name: bool(_NOT_THE_DIE.search(spelled(name))))
 
@@ -177,9 +179,10 @@ def of_other_unit(name: str) -> bool:
 
 
 def unnamed(names: list[str]) -> bool:
-    """Whether no name tells anything: numbers, or all the columns of one variable of a .mat."""
+    """Whether no name tells anything: numbers, or all the columns of a .mat's only variable."""
     numbered = names == [str(number) for number in range(1, len(names) + 1)]
-    return numbered or len(names) > 3 and len({_ARRAY.sub("", name) for name in names}) == 1
+    variables = {_ARRAY.sub("", name) for name in names}
+    return numbered or len(names) not in (1, 3) and len(variables) == 1
 
 
 def _of_three(names: list[str]) -> list[str]:

@@ -219,7 +219,9 @@ def _check_there(table: Table, wanted: Mapping[str, Mapped], path: Path) -> None
             do = f"these are no rates ({other}){_beside(path)}; else {do}"
         elif words := _offered(table, wanted, missing):
             do = f"if these are rates: {words}"
-        raise BadRecording(path, f"no column for {', '.join(missing)}", do=f"{do}, {_of(table)}")
+        why = f" ({table.notes[0]})" if usual.unnamed(table.names) and table.notes else ""
+        problem = f"no column for {', '.join(missing)}{why}"
+        raise BadRecording(path, problem, do=f"{do}, {_of(table)}")
 
 
 def _of_another_sensor(table: Table, path: Path) -> str:
@@ -259,8 +261,8 @@ def take_both(gyro: Path, other: Path) -> str:
 def _offered(table: Table, wanted: Mapping[str, Mapped], missing: list[str]) -> str:
     """A ready mapping of what may be rates, by names or, where nothing names columns, by values."""
     if usual.unnamed(table.names):
-        first = table.first_rows(table.names) if not set(wanted) - {TIME} else {}
-        return " ".join(f"--map {words}" for words in likely_columns(first, table.calendar))
+        likely = likely_columns(table) if not set(wanted) - {TIME} else []
+        return " ".join(f"--map {words}" for words in likely)
     bare = usual.bare_axes(table.names)
     unit = (by_habit("gx", bare["gx"], table.names) or ("dps", ""))[0] if bare else ""
     return " ".join(f"--map {t}={c}:{unit}" for t, c in bare.items() if t in missing)

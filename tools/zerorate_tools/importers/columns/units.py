@@ -9,7 +9,7 @@ RATE_DPS = {
     **{"dps": 1.0, "deg/s": 1.0, "mdps": 1e-3},
     **{"rad/s": 180 / math.pi, "mrad/s": 0.18 / math.pi},
 }
-ACCEL_G = {"g": 1.0, "mg": 1e-3, "m/s2": 1 / STANDARD_GRAVITY}
+ACCEL_G = {"g": 1.0, "mg": 1e-3, "ug": 1e-6, "m/s2": 1 / STANDARD_GRAVITY}
 TEMP_DEGC = {"degc": (1.0, 0.0), "c": (1.0, 0.0), "k": (1.0, -273.15), "degf": (5 / 9, -160 / 9)}
 RAW = "lsb"
 KINDS = {"t": "time", "g": "gyro", "a": "accel"}
@@ -28,6 +28,7 @@ _WRITTEN = {
     rf"|m[\s_*·]{_SEC}\^?-2",
     "g": "gs?|gees?",
     "mg": "mg",
+    "ug": "[uµμ]g",
     "degc": "°c|degc|celsius|℃",
     "c": "c",
     "degf": "°f|degf|f",
@@ -41,13 +42,13 @@ _WRITTEN = {
 _WRITTEN_BY_KIND = {
     "time": ("s", "ms", "us", "ns"),
     "gyro": ("mdps", "dps", "mrad/s", "rad/s", "lsb"),
-    "accel": ("m/s2", "mg", "g", "lsb"),
+    "accel": ("m/s2", "mg", "ug", "g", "lsb"),
     "temp": ("degc", "degf", "c", "k", "lsb"),
 }
 #: Whole names that tell a unit; T(°) is what WitMotion writes.
 _BY_NAME = {
     "time": {
-        "timeus": "us", "timems": "ms", "micros": "us", "microseconds": "us",
+        "micros": "us", "microseconds": "us",
         "millis": "ms", "milliseconds": "ms", "seconds_elapsed": "s",
         "__time": "s",
     },
@@ -82,6 +83,8 @@ def unit_in_name(target: str, column: str) -> str | None:
     """The unit that a column's own name ends with (gx_dps, ax [m/s2], temp_C), or None."""
     name = _DENOMINATOR.sub(r"/\1", _INDEX.sub("", column.strip().lower()))
     kind = kind_of(target)
+    if kind == "time" and (found := re.search("time([mun]s)$", name)):
+        return found[1]
     if name in _BY_NAME.get(kind, {}):
         return _BY_NAME[kind][name]
     in_brackets = _BRACKETS.search(name)

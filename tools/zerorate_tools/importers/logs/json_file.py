@@ -4,6 +4,7 @@ A line may also be a list of numbers, and what Python prints of a dict, a list o
 """
 
 import json
+import re
 from ast import literal_eval
 from collections import Counter
 from collections.abc import Iterable, Iterator
@@ -23,6 +24,8 @@ from .arrays import table_of_arrays
 
 _ROWS, _SEEN = 8_192, 3000
 _LONGEST_LIST = 9
+_UNITS = ("unit", "units")
+_AXIS = re.compile(r"[xyz]$|\]$", re.I)
 _DO = "write an object for each sample, one a line"
 
 
@@ -123,21 +126,23 @@ def _of_records(begun, path: Path) -> Table:
     return table
 
 
-def _flat(record: Any, before: str = "") -> Iterator[tuple[str, Any]]:
+def _flat(record: Any, before: str = "", unit: str = "") -> Iterator[tuple[str, Any]]:
     """Numbers and texts of an object by their path: angular_velocity.x; those of a short list by
-    their number. A text that is a number is one."""
+    their number; axes with the unit that stands beside them. A text that is a number is one."""
     items: Iterable[tuple[str, Any]] = ()
     if isinstance(record, dict):
-        items = ((f"{before}.{key}".lstrip("."), value) for key, value in record.items())
+        unit = next((f" [{record[key]}]" for key in _UNITS if key in record), unit)
+        others = ((key, value) for key, value in record.items() if key not in _UNITS)
+        items = ((f"{before}.{key}".lstrip("."), value) for key, value in others)
     elif isinstance(record, (list, tuple)) and len(record) <= _LONGEST_LIST:
         items = ((f"{before}[{at}]", value) for at, value in enumerate(record))
     for name, value in items:
         if isinstance(value, (dict, list, tuple)):
-            yield from _flat(value, name)
+            yield from _flat(value, name, unit)
         elif isinstance(value, str):
             yield name, _number(value)
         elif value is not None:
-            yield name, value
+            yield name + (unit if _AXIS.search(name) else ""), value
 
 
 def _number(text: str) -> float | str:

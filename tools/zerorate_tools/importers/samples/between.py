@@ -98,7 +98,7 @@ class Bridged:
         spans = _spans(t_us, at)
         filled[lacking & (spans > self._longest_us[name])] = np.nan
         bridged = spans[lacking & np.isfinite(filled)]
-        if len(bridged):
+        if bridged.any():
             self.stretches[name] = max(self.stretches.get(name, 0.0), float(bridged.max()))
         return filled
 
@@ -116,8 +116,7 @@ def _spans(t_us: np.ndarray, at: np.ndarray) -> np.ndarray:
     """(n,) microseconds between the two of the sorted `at` around each time; before the first and
     after the last, to that one."""
     ends = np.concatenate([[np.nan], at, [np.nan]])
-    after = np.searchsorted(at, t_us) + 1
-    spans = ends[after] - ends[after - 1]
+    spans = ends[np.searchsorted(at, t_us) + 1] - ends[np.searchsorted(at, t_us, "right")]
     return np.where(np.isnan(spans), np.maximum(at[0] - t_us, t_us - at[-1]), spans)
 
 

@@ -1,5 +1,6 @@
 """From physical units to integers, piece by piece, every loss counted."""
 
+import shlex
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -220,9 +221,10 @@ def absent(plan: Plan, names: list[str], path: Path) -> list[str]:
         take = f"; {beside.name} is beside it: {take_both(path, beside)}" if beside else ""
         out.append(f"no acceleration: nothing can be learned against gravity{take}")
     if TEMP not in plan.wanted:
-        other = other_temperatures(names)
+        other = other_temperatures([name for name in names if name not in plan.columns])
         is_near = "it is" if len(other) == 1 else "one of them is"
-        offer = f"; if {is_near} the sensor's or near it: --map temp={other[0]}" if other else ""
+        words = f"--map {shlex.quote(f'temp={other[0]}')}" if other else ""
+        offer = f"; if {is_near} the sensor's or near it: {words}" if other else ""
         listed = f" by its name, but {', '.join(other)}" if other else ""
         out.append(f"no temperature{listed}: the bias cannot be followed over temperature{offer}")
     return out

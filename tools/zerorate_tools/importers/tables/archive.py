@@ -6,21 +6,22 @@ import zipfile
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from itertools import chain, zip_longest
+from dataclasses import replace
+from itertools import zip_longest
 from pathlib import Path
 
 import numpy as np
 
 from ...errors import BadRecording
 from ..columns import names as usual
-from ..columns.guesses import likely_columns
+from ..columns.guesses import likely_columns, only_grows
 from .table import Chunk, Table
 
 _TABLES = (".csv", ".txt", ".tsv", ".dat", ".mat")
 #: No log packs so well: deflate takes 1,032 bytes to one at its best, a table 20.
 _MOST_UNPACKED = 300
 _TOLD = 8
-_PER_SENSOR = re.compile("gyro|accel|angular|rotation|temp", re.I)
+_PER_SENSOR = re.compile("gyro|acc(?!ur)|angular|rotation|temp", re.I)
 
 
 @contextmanager
@@ -60,19 +61,20 @@ def folder_of_tables(
 ) -> Table:
     """The tables of a folder beside each other, by the time that they share. Raises BadRecording.
 
-    Columns get the name of their file before their own: `Gyroscope x`. Blocks of rows of the files
-    take turns. opened: reads a file; said: the file that the folder was unpacked from.
+    Columns get the name of their file before their own: `Gyroscope x`. A chunk holds rows of each
+    file. opened: reads a file; said: the file that the folder was unpacked from.
     """
     found = list(_tables_in(path, opened))
     tables = {file.stem: table for file, table in found if _is_of_sensors(table, file)}
     path = said or path
-    if not tables:
+    if not _hold_rates(tables):
         rates = [one for one in found if usual.gyro_groups(one[1].names)]
-        rates += [one for one in found if usual.unnamed(one[1].names) and _may_hold_rates(one[1])]
+        rates += [one for one in found if usual.unnamed(one[1].names) and likely_columns(one[1])]
         if len(rates) == 1:
             (file, table), *_ = rates
             table.notes.append(f"of the table {file.name} alone")
             return table
+    if not tables:
         held = ", ".join(file.name for file, _ in (rates or found)[:_TOLD])
         problem = "several tables that may hold rates" if rates else "no table with rates in it"
         one_of = f" in {held}" if held else ""
@@ -88,7 +90,7 @@ def tables_of_sensors(files: Sequence[Path], opened: Callable[[Path], Table]) ->
         if file.stem in tables:
             raise BadRecording(file, "two files of that name", do="give one of them another name")
         tables[file.stem] = opened(file)
-    if not any(usual.gyro_groups(t.names) or _is_of_rates(s, t) for s, t in tables.items()):
+    if not _hold_rates(tables):
         bare = next((f for f in files if usual.unnamed(tables[f.stem].names)), None)
         if bare:
             do = "write a line of names above each table, as time_s,x,y,z"
@@ -98,8 +100,28 @@ def tables_of_sensors(files: Sequence[Path], opened: Callable[[Path], Table]) ->
     return _by_shared_time(tables, files[0])
 
 
-def _is_of_rates(stem: str, table: Table) -> bool:
-    return "gyro" in stem.lower() and bool(usual.bare_axes(table.names))
+def with_axes(table: Table, file: Path) -> Table:
+    """A sensor's table of a time and three axes, or a temperature, with names if it has none."""
+    if not usual.unnamed(table.names) or not _PER_SENSOR.search(file.stem):
+        return table
+    times = [name for name, values in table.first_rows(table.names).items() if only_grows(values)]
+    axes = ("temp",) if "temp" in file.stem.lower() else "xyz"
+    own = dict(zip(("time", *axes), [*times, *(n for n in table.names if n not in times)]))
+    if len(times) != 1 or len(table.names) != len(own):
+        return table
+
+    def chunks(wanted: list[str]) -> Iterator[Chunk]:
+        for chunk in table.chunks([own[name] for name in wanted]):
+            yield Chunk(chunk.place, {name: chunk.columns[own[name]] for name in wanted})
+
+    calendar = frozenset(name for name in own if own[name] in table.calendar)
+    return replace(table, names=[*own], chunks=chunks, calendar=calendar, notes=[])
+
+
+def _hold_rates(tables: dict[str, Table]) -> bool:
+    named = (table.names for stem, table in tables.items() if "gyro" in stem.lower())
+    by_file = any(map(usual.bare_axes, named))
+    return by_file or any(usual.gyro_groups(table.names) for table in tables.values())
 
 
 def _by_shared_time(tables: dict[str, Table], path: Path) -> Table:
@@ -124,11 +146,6 @@ def _tables_in(path: Path, opened: Callable[[Path], Table]) -> Iterator[tuple[Pa
                 yield file, opened(file)
             except BadRecording:  # a note, a setting
                 continue
-
-
-def _may_hold_rates(table: Table) -> bool:
-    first = table.first_rows(table.names)
-    return any(words.startswith("gx=") for words in likely_columns(first, table.calendar))
 
 
 def _is_of_sensors(table: Table, file: Path) -> bool:
@@ -157,7 +174,8 @@ def _together(tables: dict[str, Table], shared: list[str]) -> Table:
     def chunks(wanted: list[str]) -> Iterator[Chunk]:
         place = 0
         turns = [of_one(stem, table, wanted) for stem, table in tables.items()]
-        for columns in filter(None, chain.from_iterable(zip_longest(*turns))):
+        for some in zip_longest(*turns):
+            columns = {n: np.concatenate([one[n] for one in some if one]) for n in wanted}
             size = len(next(iter(columns.values())))
             yield Chunk(np.arange(place, place + size), columns)
             place += size

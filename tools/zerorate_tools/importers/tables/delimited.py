@@ -53,13 +53,16 @@ def _chunks(
     dropped: Counter[str],
     advance: Callable[[float], None],
 ) -> Iterator[Chunk]:
-    start, skip = 0, form.skip
+    start, skip, why = 0, form.skip, ""
     for lines in line_blocks(path, form.encoding, advance, _BLOCK_BYTES):
         odd = _OddLines(skip)
         rows = _rows(path, _changed(lines, form), form, names, odd)
         place = odd.places(start, rows.num_rows)
-        start, skip = start + rows.num_rows + odd.count, 0
-        dropped.update({"not as many cells as the header": odd.count} if odd.count else {})
+        if odd.rows:
+            row, (expected, cells) = start + odd.rows[0] + 1, odd.cells
+            why = why or f"not {expected} cells (the first, row {row}, has {cells})"
+            dropped[why] += len(odd.rows)
+        start, skip = start + rows.num_rows + len(odd.rows), 0
         if rows.num_rows and not lines.endswith(_ENDS):
             dropped["the last line does not end, so a digit may be missing"] += 1
             break
@@ -115,25 +118,30 @@ def _single_blanks(text: bytes) -> bytes:
 
 
 class _OddLines:
-    """Lines of a block that are no row: comments, and those with too many or too few cells."""
+    """Lines of a block that are no row: comments, and those with too many or too few cells.
+
+    rows: which the latter are; cells: those that a row has and those of the first of them.
+    """
 
     def __init__(self, before: int) -> None:
         self.before = before
-        self.count = 0
-        self._rows: list[int] = []
+        self.rows: list[int] = []
+        self.cells = 0, 0
 
     def take(self, row: pyarrow.csv.InvalidRow) -> str:
         """Arrow's handler of such a line."""
         text = str(row.text).lstrip()
-        if text and not text.startswith(COMMENTS):
-            self.count += 1
-            self._rows.append(row.number - self.before - 1)
+        if not text or text.startswith(COMMENTS):
+            self.before += 1
+        else:
+            self.rows.append(row.number - self.before - 1)
+            self.cells = self.cells if self.cells[0] else row[:2]
         return "skip"
 
     def places(self, start: int, size: int) -> np.ndarray:
         """(size,) numbers of the rows of a block, of which the first may be `start`."""
-        every = np.arange(size + self.count)
-        return start + np.setdiff1d(every, self._rows, assume_unique=True)[:size]
+        every = np.arange(size + len(self.rows))
+        return start + np.setdiff1d(every, self.rows, assume_unique=True)[:size]
 
 
 def _numbers(cells: pa.Array, name: str, form: Form) -> np.ndarray:

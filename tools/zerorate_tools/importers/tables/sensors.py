@@ -77,7 +77,13 @@ def _beside(table: Table, column: str, words: list[str]) -> Table:
     bare = usual.unnamed(table.names) and len(values) == len("xyz")
     labels = dict(zip(values, "xyz" if bare else values))
     times = {("time" if bare else name): name for name in shared}
-    parts = {f"{w} {labels[v]}": (code, v) for code, w in enumerate(words) for v in values}
+    first = table.first_rows([column, *values])
+    parts = {
+        f"{word} {labels[v]}": (code, v)
+        for code, word in enumerate(words)
+        for v in values
+        if np.isfinite(first[v][first[column] == code]).any()
+    }
 
     def chunks(wanted: list[str]) -> Iterator[Chunk]:
         whose = [parts[name] for name in wanted if name in parts]

@@ -46,6 +46,8 @@ _UNIT = re.compile(
     r"[\[(]?(-|[mun]?s|sec|(m?deg|rad|°)/s|m?dps|m?g|m/s(\^?2|²)|m/\(s\^2\)|°?c|degc|k|lsb)[\])]?$",
     re.I,
 )
+#: What stands before names in a comment, and around each of YEI's: Data format: "%float(GyroX),...
+_BEFORE_NAMES, _PRINTED = re.compile(r'^[\w ]+:\s+"?'), re.compile(r'%\w+\((\w+)\)"?')
 _RATE = re.compile(
     r"\b(?:sample|sampling|update|output|data)[ _]?(?:rate|frequency)\b"
     r"[^\d\n]{0,12}([\d.]*\d)\s*(k?)",
@@ -304,12 +306,17 @@ def _names(lines: list[str], at: int | None, skip: int, first: list[str], delimi
             if _as_many(names, first) and not _numbers(names, delimiter):
                 return _as_wide(names, first), ""
     numbered = [str(number) for number in range(1, len(first) + 1)]
-    return numbered, "no line names the columns: they are called 1, 2, 3, ..."
+    cells = _cells(lines[skip - 1], delimiter) if skip else []
+    if len(cells) < _CELLS or _numbers(cells, delimiter) or cells[0].startswith(COMMENTS):
+        return numbered, "no line names the columns: they are called 1, 2, 3, ..."
+    why = f"line {skip} names {len(cells)} columns, but rows have {len(first)}"
+    return numbered, f"{why}: they are called 1, 2, 3, ..."
 
 
 def _in_comment(comment: str, delimiter: str) -> list[str]:
-    """The cells of a comment."""
-    return [cell.strip() for cell in _cells(comment.lstrip("#/%* "), delimiter)]
+    """The cells of a comment, without what it says before them."""
+    text = _PRINTED.sub(r"\1", _BEFORE_NAMES.sub("", comment.lstrip("#/%* ")))
+    return [cell.strip() for cell in _cells(text, delimiter)]
 
 
 def _with_those_above(names: list[str], lines: list[str], delimiter: str) -> list[str]:

@@ -29,7 +29,7 @@ class Table:
     of dates and times, which come as seconds since 1970. lsb: scales that the format states, by the
     names that Options has for them. words: columns of words, of which there are few: they come as
     each word's number. said_hz: what the file says of its rate. read_bytes: of the file, so far,
-    where the reader knows. parts: files whose chunks take turns.
+    where the reader knows. parts: files that it is made of.
     """
 
     names: list[str]
@@ -58,8 +58,8 @@ class Table:
     def first_rows(self, names: list[str]) -> dict[str, np.ndarray]:
         """The columns asked for, of the first chunk; empty ones where there is no row."""
         with self.looked_at() as chunks:
-            found = [chunk.columns for chunk in islice(chunks(names), self.parts)]
-        return {n: np.concatenate([np.empty(0), *(one[n] for one in found)]) for n in names}
+            first = next(iter(chunks(names)), None) if names else None
+        return first.columns if first else {name: np.empty(0) for name in names}
 
 
 def chunks_of(begun: Callable[[], Iterable[dict[str, float]]], names: list[str]) -> Iterator[Chunk]:
