@@ -146,6 +146,8 @@ def test_a_name_of_unfinished_recordings_is_refused(tmp_path, new, killed):
     with pytest.raises(BadRecording, match="recordings that are not finished; leave out .partial"):
         with new("run.partial.csv"):
             pass
+    with pytest.raises(BadRecording, match="not finished"):
+        left_over(tmp_path / "run.partial.csv")
     left = killed()
     with pytest.raises(BadRecording, match="not finished"):
         recover(left, left)

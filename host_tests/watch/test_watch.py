@@ -79,10 +79,21 @@ def test_a_file_begun_anew_is_a_new_power_on_and_one_that_goes_away_is_said(log)
 
 def test_rows_that_are_none_are_left_out_and_counted(log, capsys):
     rows = log.read_text().splitlines(keepends=True)
-    log.write_text("".join([*rows[:20], "oops,1,2\n", *rows[20:]]))
+    digits = rows[19].replace(",", "," + "9" * 19 + ",", 1).rpartition(",")[0]
+    log.write_text("".join([*rows[:20], "oops,1,2\n", digits + "\n", *rows[20:]]))
     live = watch(str(log), WatchOptions(once=True))
     assert live.samples == len(rows) - 1
-    assert "1 rows left out: not 8 integers" in capsys.readouterr().out
+    assert "2 rows left out: not 8 integers" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("reading", [-(2**31), 2**31, -(10**17)])
+def test_readings_of_no_chip_are_at_a_rail(log, reading):
+    *rows, last = log.read_text().splitlines(keepends=True)
+    names = rows[0].strip().split(",")
+    cells = dict(zip(names, last.strip().split(",")), gx=reading, gy=-reading)
+    log.write_text("".join([*rows, ",".join(str(cells[n]) for n in names) + "\n"]))
+    live = watch(str(log), WatchOptions(once=True))
+    assert live.samples == len(rows) and live.bias_dps == pytest.approx([1.5, -2, 0.5], abs=0.02)
 
 
 def test_the_firmware_is_where_a_replay_of_the_file_leaves_it(log, capsys):

@@ -141,7 +141,8 @@ def recover(partial: str | PathLike[str], out: str | PathLike[str] | None = None
 
 
 def left_over(out: Path) -> list[Path]:
-    """What killed recorders left of `out`, the newest last."""
+    """What killed recorders left of `out`, the newest last. Raises BadRecording for its name."""
+    _check_name(out)
     found = []
     for path in unfinished_of(out):
         with suppress(BadRecording), _taken(path):

@@ -13,6 +13,7 @@ from ..recordings.recording import Columns
 
 FRAME = ("ax", "ay", "az", "temp", "gx", "gy", "gz")
 _MOST_US = 1 << 29
+_MOST_LSB = 1 << 21  # far beyond a rail of 16 bits; eight bits of fraction more fit the kernels' 31
 
 
 @dataclass(frozen=True)
@@ -52,7 +53,7 @@ def frames_of(columns: Mapping[str, Any], before_us: int, channels: Sequence[str
     frames = np.zeros((len(t_us), len(FRAME)), np.int32)
     for i, name in enumerate(FRAME):
         if name in columns:
-            frames[:, i] = columns[name]
+            frames[:, i] = np.clip(columns[name], -_MOST_LSB, _MOST_LSB)
     extra = np.zeros((len(t_us), len(channels)), np.int32)
     for i, name in enumerate(channels):
         extra[:, i] = columns[name]

@@ -46,6 +46,9 @@ def growing_file(path: Path) -> Path:
     return path
 
 
+_INTEGER = re.compile(rb"\s*-?\d{1,18}\s*")  # so many digits fit 64 bits
+
+
 class CsvTail:
     """Reads the rows of a growing CSV, each once; the last one only when its line has ended.
 
@@ -98,8 +101,8 @@ class CsvTail:
             return _parsed(b"\n".join(good), self.column_names) if good else None
 
     def _is_row(self, row: bytes) -> bool:
-        cells = [cell.strip().lstrip(b"-+") for cell in row.split(b",")]
-        good = len(cells) == len(self.column_names) and all(cell.isdigit() for cell in cells)
+        cells = row.split(b",")
+        good = len(cells) == len(self.column_names) and all(map(_INTEGER.fullmatch, cells))
         self.bad_rows += not good and bool(row.strip())
         return good
 
