@@ -9,6 +9,7 @@ import pandas as pd
 import pytest
 from zerorate_tools.errors import BadRecording, ZerorateError
 from zerorate_tools.importers import Options, import_recording, parsed_mapping, read_foreign
+from zerorate_tools.importers.report import cut_words
 
 from .test_tables import HEAD, lines, rates, read, table
 
@@ -144,3 +145,8 @@ def test_axes_of_another_sensor_are_offered_as_no_rates(tmp_path, name, names, t
         read(tmp_path, frame, name)
     assert not re.search("--map gx=[xX]", str(error.value))
     assert "likely in Gyroscope.csv: zerorate import" in str(error.value)
+
+
+def test_cut_is_offered_for_what_it_can_read(tmp_path):
+    assert "zerorate cut" in cut_words(tmp_path / "a.csv", 9)
+    assert "zerorate cut" not in cut_words(tmp_path, 9)

@@ -4,6 +4,7 @@ from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from os import PathLike
+from pathlib import Path
 
 from ..numbers import duration
 
@@ -27,6 +28,8 @@ class Options:
 
 def cut_words(path: PathLike[str], row: int) -> str:
     """What to do where a file holds two recordings, the second from that row on."""
+    if Path(path).is_dir():
+        return "cut each of its files there, by hand, and import the parts"
     return f"cut it there: zerorate cut {path} --at-row {row} --out FOLDER"
 
 

@@ -35,7 +35,7 @@ _NOT_THE_DIE = re.compile(
     r"ambient|air|baro|bmp|bme|aht|sht|cpu|processor|environment|motor|batt|esc|water|room"
 )
 _THE_DIE = re.compile("gyr|imu")
-#: Beside another time it may be one.
+#: A temperature, or a time where there is no other.
 _CAPITAL_T = re.compile("T(?![A-Za-z])")
 _TIME = re.compile(
     r"(?:t|ts|times?|timestamps?|timestampsample|now|stamp|.*time[mun]s|secondselapsed|datetime|"
