@@ -103,6 +103,19 @@ def test_a_step_is_in_the_middle_of_the_ticks_where_it_may_have_been(known, jump
     assert steps_first._timed(replace(session, ticks_dps=None), STEP, other) is STEP
 
 
+def test_of_several_steps_each_is_timed_without_the_others_and_all_are_taken_out():
+    sizes = [(1.0, -1.0, 0.0), (0.5, 2.0, 1.0), (-2.0, 0.5, 1.0)]
+    steps = [step(block, size, [0.1] * 3) for block, size in zip((3, 6, 9), sizes)]
+    level = sum(np.outer(TICKS >= at, size) for at, size in zip((33, 64, 91), sizes))
+    session = replace(in_ticks(KNOWN, 0), ticks_dps=level)
+    plain = session.rate_dps.copy()
+    session.rate_dps += level.reshape(12, 10, 3).mean(axis=1)
+    less = steps_first._less(session, steps)
+    assert [s.at_s for s in less.steps] == [66.0, 128.0, 182.0]
+    assert less.ticks_dps == pytest.approx(np.zeros((120, 3)))
+    assert less.rate_dps == pytest.approx(plain)
+
+
 # of what shakes within a tick, squares
 SHAKEN = np.where(TICKS == 64, 0.01, 0.0009)
 

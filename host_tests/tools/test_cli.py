@@ -184,9 +184,10 @@ def test_a_wrong_word_is_answered_with_the_nearest(capsys, typed, meant):
     assert ended.value.code == 2 and meant in capsys.readouterr().err
 
 
-def test_a_word_like_no_other_is_answered_with_none(capsys):
+@pytest.mark.parametrize("typed", [["xyzzy"], ["model", "", "a.json"]])
+def test_a_word_like_no_other_is_answered_with_none(capsys, typed):
     with pytest.raises(SystemExit):
-        main(["xyzzy"])
+        main(typed)
     assert "did you mean" not in capsys.readouterr().err
 
 

@@ -106,7 +106,7 @@ class _Parser(argparse.ArgumentParser):
         """Print usage and the message, and exit with 2."""
         wrong = re.search(r"invalid choice: '(.*?)'|unrecognized arguments: (\S+)", message)
         if wrong:
-            word = wrong[1] or wrong[2].partition("=")[0]
+            word = (wrong[1] or wrong[2] or "").partition("=")[0]
             near = difflib.get_close_matches(word, sorted(_words_of(_Parser.entered)), 1)
             if wrong[2] and (others := _commands_with(word, self)):
                 near, message = [], f"{message}: it is an option of {', '.join(others)}"

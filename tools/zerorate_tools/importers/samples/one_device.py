@@ -104,7 +104,7 @@ def refuse_change_of_unit(
     """Raise BadRecording where readings grow or shrink by the factor of a unit at some row, and are
     so at the end. stretches: samples in the file's order."""
     for axes, units in _UNITS.items():
-        if not all(axis in plan.wanted for axis in (*axes, *ACCEL)):
+        if not stretches or not all(axis in plan.wanted for axis in (*axes, *ACCEL)):
             continue
         every = np.concatenate([[s[axis] for axis in axes] for s in stretches], axis=1)
         sizes = np.linalg.norm(every[:, np.isfinite(every).all(axis=0)], axis=0)
