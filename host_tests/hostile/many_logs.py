@@ -4,8 +4,9 @@
 
 Forks judge them, thousands each: what `import` does in its guarded child and what it does with the
 rows run in one process, with the child's limit of memory. A fork that dies is begun again behind
-the log that killed it. A fault is a traceback, a death, or a log that its reader does not end with;
-where a parser died or went on that `import` has in its guarded child, that child is counted.
+the log that killed it. A fault is a traceback, a warning on the terminal, a death, or a log that
+its reader does not end with; where a parser died or went on that `import` has in its guarded child,
+that child is counted.
 """
 
 import argparse
@@ -21,6 +22,7 @@ import struct
 import sys
 import tempfile
 import traceback
+import warnings
 from collections import Counter
 from pathlib import Path
 from types import SimpleNamespace
@@ -111,7 +113,8 @@ def in_this_process(reader, path, instance, advance):
     _at[8] = 1
     resource.setrlimit(resource.RLIMIT_DATA, (MEMORY_MB << 20, resource.RLIM_INFINITY))
     try:
-        words = apart.written(reader, path, instance, os.dup(out))
+        with warnings.catch_warnings(action="ignore"):  # the child has no standard error
+            words = apart.written(reader, path, instance, os.dup(out))
     finally:
         resource.setrlimit(resource.RLIMIT_DATA, (resource.RLIM_INFINITY,) * 2)
         _at[8] = 0

@@ -78,18 +78,20 @@ def test_a_mapping_with_units_gives_integers(tmp_path):
 
 def test_rows_that_are_no_samples_are_dropped_and_counted(tmp_path):
     columns = {
-        "t_s": [0, 1, 2, 3, 2.5, 4, np.nan],
-        "gx_dps": [1, 0, 1, 1, 1, np.nan, 1],
-        "gy_dps": [1, 0, 1, 300, 1, 1, 1],
-        "gz_dps": [1, 0, 1, 1, 1, 1, 1],
-        "temp_c": [20, 0, 20, 20, 20, 20, 20],
+        "t_s": [0, 1, 2, 3, 2.5, 4, np.nan, 5, 1e306],
+        "gx_dps": [1, 0, 1, 1, 1, np.nan, 1, 1e200, 1],
+        "gy_dps": [1, 0, 1, 300, 1, 1, 1, 1, 1],
+        "gz_dps": [1, 0, 1, 1, 1, 1, 1, 1, 1],
+        "temp_c": [20, 0, 20, 20, 20, 20, 20, 20, 20],
     }
-    recording, report = read(tmp_path, pd.DataFrame(columns), options=Options(gyro_lsb_per_dps=131))
+    table, options = pd.DataFrame(columns), Options(gyro_lsb_per_dps=131)
+    with np.errstate(over="raise"):
+        recording, report = read(tmp_path, table, options=options)
     assert recording.columns["t_us"].tolist() == [0, 2_000_000, 2_500_000, 3_000_000]
-    assert report.rows_read == 7 and report.rows_written == 4
-    assert report.dropped == dict.fromkeys(
-        ("all readings are zero", "a reading is no number", "the time stamp is no number"), 1
-    )
+    assert report.rows_read == 9 and report.rows_written == 4
+    assert report.dropped == {
+        "all readings are zero": 1, "a reading is no number": 2, "the time stamp is no number": 2
+    }  # fmt: skip
     assert told(report, "time goes back at 1 rows: sorted by time")
     assert told(report, "gy: 1 readings at the end of the 16-bit range (clipped)")
     # three zero rates alone may be a sample

@@ -9,15 +9,22 @@ from itertools import islice
 import numpy as np
 
 _ROWS = 32_768
+#: What single precision holds; the square of more would not be finite in double precision.
+_MOST = float(np.finfo(np.float32).max)
 
 
 @dataclass
 class Chunk:
     """Rows in the file's order. place: (n,) each row's 0-based number among the data rows;
-    columns: (n,) floats by name, NaN where a cell is no number."""
+    columns: (n,) floats by name, NaN where a cell is no number, or too large for a sensor's."""
 
     place: np.ndarray
     columns: dict[str, np.ndarray]
+
+    def __post_init__(self) -> None:
+        for name, values in self.columns.items():
+            if (beyond := np.abs(values) > _MOST).any():
+                self.columns[name] = np.where(beyond, np.nan, values)
 
 
 @dataclass
