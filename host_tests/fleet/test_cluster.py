@@ -182,6 +182,17 @@ def test_more_batches_than_the_scheduler_may_hold_all_come_back(monkeypatch):
     assert sorted(batch[0] for batch, _ in results) == list(range(20))
 
 
+@pytest.mark.parametrize(("asked", "start"), [(None, 2), (1, 1), (10**8, 2)])
+def test_at_most_all_cores_work(monkeypatch, asked, start):
+    def started(_, workers):
+        raise ZerorateError(f"{workers} start")
+
+    monkeypatch.setattr("zerorate_tools.fleet.cluster._started", started)
+    monkeypatch.setattr("os.cpu_count", lambda: 2)
+    with pytest.raises(ZerorateError, match=f"^{start} start"), cluster(workers=asked):
+        pass
+
+
 def test_a_scheduler_that_does_not_answer_is_said(data, tmp_path, monkeypatch):
     monkeypatch.setattr("zerorate_tools.fleet.cluster._CONNECT_S", 0.2)
     with pytest.raises(ZerorateError, match="no Dask scheduler answers"):

@@ -57,7 +57,7 @@ def in_batches(
 def cluster(scheduler: str | None = None, workers: int | None = None) -> Iterator[Client]:
     """A client of the cluster at `scheduler`, or of one made here for as long as it is used.
 
-    workers: processes of the latter, one core each (default: all cores). Raises MissingLibrary
+    workers: processes of the latter, one core each, at most all cores. Raises MissingLibrary
     without Dask, ZerorateError for a scheduler that does not answer or whose workers lack zerorate.
     """
     try:
@@ -69,6 +69,7 @@ def cluster(scheduler: str | None = None, workers: int | None = None) -> Iterato
         with _client_of(distributed, scheduler) as client:
             yield client
         return
+    cores = os.cpu_count() or 1
     with (
         _safe_path(),
         dask.config.set(
@@ -79,7 +80,7 @@ def cluster(scheduler: str | None = None, workers: int | None = None) -> Iterato
                 "distributed.deploy.lost-worker-timeout": "1 hour",
             }
         ),
-        _started(distributed, workers or os.cpu_count() or 1) as local,
+        _started(distributed, min(workers or cores, cores)) as local,
         distributed.Client(local) as client,
     ):
         yield client
