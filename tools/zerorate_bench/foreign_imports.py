@@ -81,7 +81,7 @@ def judged(log: Log) -> dict[str, str]:
     """What an import made of one log."""
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / "log").mkdir()
-        source = log.write(Path(folder) / "log", World())
+        source = log.write(Path(folder) / "log", World(log.samples))
         outcome, said = _outcome(log, source, Path(folder) / "out.parquet")
     return {"log": log.what, "outcome": outcome, "said": said.replace(str(source), source.name)}
 
@@ -155,12 +155,12 @@ def _offers(said: str) -> list[list[str]]:
 
 def _off(recording: Recording, log: Log) -> str:
     """What is not as the truth has it, in words; empty where nothing is."""
-    world = World()
+    world = World(log.samples)
     t_s = recording.columns["t_us"] * 1e-6
     at = np.rint((t_s - t_s[0]) * world.hz).astype(int)
     # a part of a log begins later than the world, as its own times say
     own = min(max(0, round(float(t_s[0]) * world.hz)), world.samples)
-    first = min((0, 1, 2, own), key=lambda n: _far(recording, at, n))
+    first = min((0, 1, 2, own), key=lambda n: _far(recording, world.dps, at, n))
     at = at + first
     if (at < 0).any() or (at >= world.samples).any() or (np.diff(at) <= 0).any():
         return f"its times are not those of the log: {t_s[-1] - t_s[0]:.4g} s"
@@ -182,8 +182,7 @@ def _off(recording: Recording, log: Log) -> str:
     )
 
 
-def _far(recording: Recording, at: np.ndarray, first: int) -> float:
-    truth = World().dps
+def _far(recording: Recording, truth: np.ndarray, at: np.ndarray, first: int) -> float:
     inside = (at + first >= 0) & (at + first < len(truth))
     if not inside.any():
         return float("inf")

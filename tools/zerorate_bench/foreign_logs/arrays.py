@@ -11,7 +11,7 @@ from scipy.io import savemat
 
 from .world import Logs, World, plain, table, text, zipped
 
-log = Logs(__name__)
+log = Logs(__name__, samples=1000)
 # fmt: off
 
 

@@ -6,7 +6,7 @@ import pandas as pd
 from . import binary
 from .world import Logs, World, table
 
-log = Logs(__name__)
+log = Logs(__name__, samples=1000)
 # fmt: off
 _AT_US = 5_000_000
 

@@ -9,7 +9,7 @@ import pandas as pd
 
 from .world import BIAS_DPS, EPOCH_NS, STANDARD_GRAVITY, Logs, World, table, text, zipped
 
-log = Logs(__name__)
+log = Logs(__name__, samples=1000)
 # fmt: off
 _GRAVITY = [0, 0, STANDARD_GRAVITY]
 

@@ -9,7 +9,7 @@ import numpy as np
 from . import binary
 from .world import BIAS_DPS, EPOCH_NS, Logs, World, Writer, table
 
-log = Logs(__name__)
+log = Logs(__name__, samples=1000)
 # fmt: off
 
 

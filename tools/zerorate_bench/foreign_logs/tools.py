@@ -8,7 +8,7 @@ import pandas as pd
 
 from .world import AFTERNOON, STANDARD_GRAVITY, Logs, World, table, text, zipped
 
-log = Logs(__name__)
+log = Logs(__name__, samples=1000)
 # fmt: off
 _BOOTED_US = 10**8
 _DATE = "%Y-%m-%d %H:%M:%S.%f"
@@ -234,7 +234,8 @@ log.csv("x-io's x-IMU3",
         w.whole(1e6, 8 * 10**6), w.dps, w.g), name="Inertial.csv")
 
 
-@log("phyphox: rates and acceleration in one zip, of which one table ends sooner", least=0.7)
+@log("phyphox: rates and acceleration in one zip, of which one table ends sooner", least=0.7,
+    samples=3000)
 def phyphox_shorter(folder: Path, world: World) -> Path:
     rates = table("Time (s),Gyroscope {xyz} (rad/s)", world.t_s, world.rad)
     force = table("Time (s),Acceleration {xyz} (m/s^2)", world.t_s, world.mps2)

@@ -8,7 +8,7 @@ import pandas as pd
 
 from .world import Logs, World, table, text, zipped
 
-log = Logs(__name__)
+log = Logs(__name__, samples=1000)
 # fmt: off
 _GYROFLOW = """\
 GYROFLOW IMU LOG

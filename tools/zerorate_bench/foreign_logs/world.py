@@ -1,4 +1,4 @@
-"""What a sensor saw for half a minute: the truth that every log of the corpus holds."""
+"""What a sensor saw for ten or thirty seconds: the truth that every log of the corpus holds."""
 
 import re
 import zipfile
@@ -103,13 +103,15 @@ Writer = Callable[[Path, World], Path]
 @dataclass(frozen=True)
 class Log:
     """One log of the corpus. words: what a user knows and types beside the file's name; least and
-    most: the share of the samples that a sound import holds, which is none beyond all of them."""
+    most: the share of the samples that a sound import holds, which is none beyond all of them;
+    samples: how long the log is."""
 
     what: str
     write: Writer
     words: str = ""
     least: float = 0.98
     most: float = 1.0
+    samples: int = 3000
 
 
 #: Every log, in the order of the modules that write them.
@@ -119,14 +121,14 @@ CORPUS: list[Log] = []
 class Logs:
     """Registers the logs of a module; `known`: fields of Log, each method returns the writer."""
 
-    def __init__(self, module: str) -> None:
-        self._module = module
+    def __init__(self, module: str, **known: Any) -> None:
+        self._module, self._known = module, known
 
     def __call__(self, what: str, **known: Any) -> Callable[[Writer], Writer]:
         """Register a writer."""
 
         def add(write: Writer) -> Writer:
-            CORPUS.append(Log(what, write, **known))
+            CORPUS.append(Log(what, write, **self._known | known))
             return write
 
         return add

@@ -228,7 +228,7 @@ def _count(text: str) -> int:
     group(
         "where it runs",
         option("--scheduler ADDRESS", "of a running Dask cluster"),
-        option("--workers N", "processes on this machine (default, and at most: all cores)", _count),
+        option("--workers N", "processes on this machine (default and most: all cores)", _count),
         option("--devices-per-task N", "devices in one task (default: by size)", _count),
     ),
     JSON,

@@ -31,7 +31,8 @@ _DO = "write an object for each sample, one a line"
 
 def read(path: Path, instance: int = 0) -> Table:
     """Raises BadRecording."""
-    if _is_sample(head(path, 262_144)[0].partition(b"\n")[0]):
+    first, _, others = head(path, 262_144)[0].partition(b"\n")
+    if _is_sample(first) and (others.strip() or not _holds_all(_loaded(first))):
         return _of_records(lambda dropped: _lines(path, dropped), path)
     stream = open_text(path, head(path, 4096)[1])[0]
     held = json.loads(stream.read())
@@ -71,6 +72,14 @@ def _loaded(line: bytes) -> Any:
         return literal_eval(line.decode().strip())
     except (SyntaxError, TypeError, RecursionError, MemoryError) as error:
         raise ValueError from error
+
+
+def _holds_all(held: Any) -> bool:
+    """Whether an object is no sample but all of them: columns, or one list of records."""
+    values = held.values() if isinstance(held, dict) else ()
+    long = [v for v in values if isinstance(v, (dict, list)) and len(v) > _LONGEST_LIST]
+    records = sum(map(_is_records, long))
+    return records == 1 or records < len(long)
 
 
 def _is_records(held: Any) -> bool:
