@@ -54,7 +54,7 @@ class Ros:
         self.tick = tick
 
     def get_logger(self):
-        return SimpleNamespace(info=self.logged.append)
+        return SimpleNamespace(info=self.logged.append, warning=self.logged.append)
 
     def get_clock(self):
         return SimpleNamespace(now=lambda: SimpleNamespace(to_msg=lambda: "now"))
@@ -122,6 +122,25 @@ def test_the_node_takes_the_bias_off_and_keeps_it_over_a_restart(package, monkey
     again = Ros(parameters, lambda ros: rest(ros, 1)).run(package, monkeypatch)
     assert "loaded" in again.logged[0]
     assert again.published["imu/data"][0].angular_velocity.z == pytest.approx(0, abs=0.0005)
+
+
+def test_a_save_that_fails_is_logged_once_an_hour_and_stands_in_diagnostics(
+    package, monkeypatch, tmp_path
+):
+    monkeypatch.setattr("zerorate.storage.store.Store.save", lambda store, payload: False)
+    path = tmp_path / "learned.bin"
+    said = []
+
+    def rest(ros):
+        for number in range(1500):
+            ros.takes["imu/data_raw"](imu(number))
+        said.extend(ros.logged[1:])
+        said.append({pair.key: pair.value for pair in ros.status().values}["store"])
+
+    ros = Ros({"odr_hz": 50.0, "state": str(path)}, rest).run(package, monkeypatch)
+    wrong = f"{path}: cannot be written; is there room?"
+    assert said == [wrong, wrong]
+    assert ros.logged[1:] == [wrong, wrong]  # and once more at the end
 
 
 @pytest.fixture

@@ -12,15 +12,19 @@ TOLERANCE_DPS = 0.01  # a bias that moved by less need not be written
 
 
 class ImuCore:
-    """Corrects messages with the fields of sensor_msgs/Imu in place, and keeps what it learned."""
+    """Corrects messages with the fields of sensor_msgs/Imu in place, and keeps what it learned.
 
-    def __init__(self, odr_hz=100.0, full_scale_dps=250.0, state="~/.ros/zerorate.bin"):
+    tell: called with a line where what was learned cannot be written.
+    """
+
+    def __init__(self, odr_hz=100.0, full_scale_dps=250.0, state="~/.ros/zerorate.bin", tell=print):
         path = Path(state).expanduser()
         path.parent.mkdir(parents=True, exist_ok=True)
         self.corrector = FloatCorrector(odr_hz, full_scale_dps, rate="rad/s", accel="m/s2")
         self.learner = self.corrector.corrector
         self.lsb_per_dps = self.learner.sensor.gyro_lsb_per_dps
         self.store = LearnedStore(store_file(path), b"ros2", self.learner)
+        self.path, self.tell = path, tell
         self.said = f"{path}: {self.store.in_words(self.store.load())}"
         tolerance = max(1, round(TOLERANCE_DPS * self.lsb_per_dps * 256))
         self.schedule = SaveSchedule(self.store, 3, tolerance, corrector=self.learner)
@@ -56,10 +60,20 @@ class ImuCore:
         """Write what was learned, once an hour at most."""
         for axis in range(3):
             self.bias_q8[axis] = round(self.learner.bias_lsb(axis) * 256)
-        if self.learner.learned and at_the_end and self.schedule.is_significant(self.bias_q8):
-            self.store.save()
-        elif self.learner.learned:  # and not of this rest alone
-            self.schedule.offer(self.learner.state, self.bias_q8, int(self.passed_s))
+        if not self.learner.learned:  # what is known of this rest alone is not kept
+            return
+        tried = self.schedule.saves
+        if at_the_end and self.schedule.is_significant(self.bias_q8):
+            written = self.store.save()
+        elif self.schedule.offer(self.learner.state, self.bias_q8, int(self.passed_s)):
+            written = True
+        elif self.schedule.saves > tried:
+            written = False
+        else:
+            return
+        self.said = f"{self.path}: {'written' if written else 'cannot be written; is there room?'}"
+        if not written:
+            self.tell(self.said)
 
     def values(self):
         """What /diagnostics says, as texts by name."""
@@ -82,7 +96,7 @@ def main():
     parameters = {"odr_hz": 100.0, "full_scale_dps": 250.0, "state": "~/.ros/zerorate.bin"}
     for name, default in parameters.items():
         parameters[name] = node.declare_parameter(name, default).value
-    core = ImuCore(**parameters)
+    core = ImuCore(**parameters, tell=node.get_logger().warning)
     node.get_logger().info(core.said)
     newest = {"degc": 25.0, "messages": 0}
     out = node.create_publisher(Imu, "imu/data", qos)
