@@ -65,7 +65,8 @@ def test_what_the_guard_refuses_and_what_is_no_number_is_counted(heard):
         corrector.corrector.update = lambda sample, dt_us, said=refused: said
         left = corrector.update((1.0, 2.0, 3.0), (0.0, 0.0, 1.0), temp_degc)
         assert (left == (1.0, 2.0, 3.0)) is (temp_degc == float("inf"))
-    assert corrector.refused == 3
+    assert corrector.update((1.0, 2.0, 3.0), (0.0, 0.0, 1.0), dt_s=float("nan")) == (1.0, 2.0, 3.0)
+    assert corrector.refused == 4
 
 
 def test_ranges_that_are_not_told_are_the_widest_and_a_model_has_its_own(tmp_path):

@@ -80,7 +80,7 @@ class FloatCorrector:
         dt_s: since the sample before (default: as odr_hz says). A reading that is not finite comes
         back as it is and teaches nothing; `refused` counts these and what the guard refuses.
         """
-        if not all(map(isfinite, (*rate, *accel, temp_degc))):
+        if not all(map(isfinite, (*rate, *accel, temp_degc, dt_s or 0.0))):
             self.refused += 1
             return rate[0], rate[1], rate[2]
         sample = self._sample

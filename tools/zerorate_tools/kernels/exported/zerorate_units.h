@@ -22,6 +22,8 @@ static inline int32_t zerorate_word(float value) {
    Returns as zerorate_update. The rates keep their own resolution. */
 static inline int32_t zerorate_update_dps(zerorate_t *z, float gyro_dps[3], const float accel_g[3],
                                           float temp_degc, float dt_s) {
+    /* a time that fills no word, or is no number, has leapt */
+    int32_t dt_us = dt_s > -2000.0f && dt_s < 2000.0f ? (int32_t)(dt_s * 1e6f + 0.5f) : 2147483647;
     int32_t sample[7], verdict;
     for (int32_t i = 0; i < 3; i++) {
         sample[i] = zerorate_word(accel_g[i] * ZERORATE_ACCEL_LSB_PER_G);
@@ -29,7 +31,7 @@ static inline int32_t zerorate_update_dps(zerorate_t *z, float gyro_dps[3], cons
     }
     sample[3] =
         zerorate_word((temp_degc - ZERORATE_TEMP_OFFSET_DEGC) * ZERORATE_TEMP_LSB_PER_DEGC);
-    verdict = zerorate_update(z, sample, (int32_t)(dt_s * 1e6f + 0.5f));
+    verdict = zerorate_update(z, sample, dt_us);
     for (int32_t i = 0; i < 3; i++) gyro_dps[i] -= zerorate_bias_dps(z, i);
     return verdict;
 }
