@@ -4,6 +4,10 @@ from array import array
 
 from .native import rest
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from .corrector import Corrector
+
 # layout: names that a board's own compiler reads
 const = int
 # layout: end
@@ -14,7 +18,7 @@ _BURST = const(-0x3FFA0000)
 class Bursts:
     """Gives `corrector` (a Corrector) many samples a call, which machine code does faster."""
 
-    def __init__(self, corrector):
+    def __init__(self, corrector: "Corrector") -> None:
         self.corrector = corrector
         self._frame = array("i", [0] * 7)
         if rest.run and corrector.alone:
@@ -40,7 +44,7 @@ class Bursts:
         self.corrector.leave_bursts = leave
         return update
 
-    def update(self, frames, count):
+    def update(self, frames: "array[int]", count: int) -> None:
         """Do what `Corrector.update` does with each of `count` samples; allocates nothing.
 
         frames: array('i') of eight words a sample: dt_us, then ax ay az temp gx gy gz. Rates are
