@@ -46,6 +46,13 @@ def test_an_unknown_unit_is_refused():
         FloatCorrector(100, rate="deg/s")
 
 
+@pytest.mark.parametrize("name", ["full_scale_dps", "full_scale_g"])
+@pytest.mark.parametrize("most", [0, -250.0])
+def test_a_range_of_nothing_is_refused_by_its_name(name, most):
+    with pytest.raises(ValueError, match=f"{name} must be above 0, not {most}"):
+        FloatCorrector(100, **{name: most})
+
+
 @pytest.mark.parametrize(("rate", "unit"), [("dps", 1.0), ("rad/s", radians(1))])
 def test_a_matrix_is_applied_to_every_sample(matrix_model, rate, unit):
     corrector = FloatCorrector(100, rate=rate, model=matrix_model.path)

@@ -47,6 +47,9 @@ class FloatCorrector:
         if rate not in RATE_UNITS or accel not in ACCEL_UNITS:
             units = f"rate is one of {list(RATE_UNITS)}, accel one of {list(ACCEL_UNITS)}"
             raise ValueError(f"{units}, not {rate} and {accel}")
+        for name, most in (("full_scale_dps", full_scale_dps), ("full_scale_g", full_scale_g)):
+            if not most > 0:
+                raise ValueError(f"{name} must be above 0, not {most}")
         scales = [_WORD / full_scale_dps, _WORD / full_scale_g]
         temp = [_TEMP_LSB_PER_DEGC, _TEMP_OFFSET_DEGC]
         effects = None
