@@ -93,11 +93,16 @@ def show(browser):
     return show
 
 
-@pytest.fixture(scope="session", params=["phone", "desk in the dark"])
-def shown(request, closed, show):
-    """Each outcome's page on a phone and on a desk, only to be looked at."""
-    phone = request.param == "phone"
-    page = show(closed, phone=phone, theme="light" if phone else "dark")
+#: What a wide window and dark colours change does not depend on the outcome: two are enough.
+SHOWN = [*((name, "phone") for name in OUTCOMES), ("an effect", "desk"), ("hostile names", "desk")]
+
+
+@pytest.fixture(scope="session", params=SHOWN, ids=" on a ".join)
+def shown(request, outcome, show):
+    """Each outcome's page on a phone, and some on a desk in the dark, only to be looked at."""
+    name, device = request.param
+    phone = device == "phone"
+    page = show(outcome(name), phone=phone, theme="light" if phone else "dark")
     yield page
     page.tab.context.close()
 
