@@ -85,6 +85,9 @@ LISTS = pd.DataFrame({"t_s": np.arange(300) / 100, "pulse": 70, "gyro": "[0.8, -
         # a quaternion is none, and a phone's Sensor Logger writes radians
         (rates("t_s x y z w".split()), {}, "--map gx=COLUMN:UNIT.* COLUMN one of t_s, x"),
         (rates("seconds_elapsed x y z".split()), {}, "--map gx=x:rad/s --map gy=y:rad/s"),
+        (rates([f"Acc{end}" for end in ("_t (s)", *(f" {a} (m/s^2)" for a in "xyz"))]), {},
+         "these are no rates .the units of all columns"),
+        (f",{LISTS.to_csv(index=False)}".replace("\n", "\n,"), {}, "t_s, pulse; gyro: no number"),
     ],
 )  # fmt: skip
 def test_a_table_that_cannot_be_imported_says_what_to_do(tmp_path, frame, how, said):

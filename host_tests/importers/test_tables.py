@@ -1,5 +1,6 @@
 """Tables as people have them come out as integers in LSB, and every loss is told."""
 
+import json
 import re
 from functools import reduce
 from operator import xor
@@ -169,6 +170,16 @@ OWN_UNIT = [str({"t_s": i / 100, "gyro": {"unit": "deg/s", "now": dict(zip("xyz"
 SERIAL = ["=~= PuTTY log 2026.05.08 =~=", "08,0.8,0.9", *(f"25,{row}" for row in ROWS)]
 ESP = [f"\x1b[0;32mI ({320 + 10 * i}) imu: gx={r[0]} gy={r[1]} gz={r[2]}\x1b[0m"
        for i, r in enumerate(THREE)]  # fmt: skip
+LVM = ["LabVIEW Measurement\t", "***End_of_Header***\t", "X_Dimension\tTime\tTime\tTime",
+       "X0\t0\t0\t0", "***End_of_Header***", "\t".join(["X_Value", *RATES, "Comment"]),
+       *(row.replace(",", "\t") for row in ROWS)]  # fmt: skip
+INFLUX = ["#datatype,string,long,double,double,double", "#default,_result,,,,", f",result,{HEAD}",
+          *(f",,{row}" for row in ROWS)]  # fmt: skip
+XYZ, DOWN = [dict(zip("xyz", row.tolist())) for row in THREE], {"x": 0.0, "y": 0.0, "z": 9.8}
+MESSAGES = [{"Timestamp": 50 * n, "ArrayAcc": 5 * [DOWN], "ArrayGyro": XYZ[5 * n :][:5]}
+            for n in range(10)]  # fmt: skip
+SENSORS = [{"name": f"gyr{axis}", "units": "deg/s"} for axis in "XYZ"]
+EDGE_IMPULSE = {"interval_ms": 10, "sensors": SENSORS, "values": THREE.tolist()}
 COUNTED, BY_NUMBER = Options(hz=100.0), "t_us=1:s gx=2:dps gy=3:dps gz=4:dps"
 
 
@@ -190,8 +201,14 @@ COUNTED, BY_NUMBER = Options(hz=100.0), "t_us=1:s gx=2:dps gy=3:dps gz=4:dps"
         ([row.format("[12:00:01.250]") for row in TAGGED], "", COUNTED, 0),
         (["rst:0x1 (POWERON_RESET)", "I (28) boot: ESP-IDF v5.1", *ESP],
          "gx=gx:dps gy=gy:dps gz=gz:dps", None, 0),
+        (LVM, "t_us=X_Value:s", None, 0),
+        (INFLUX, "", None, 0),
+        ([HEAD.replace("g", "imu2_g"), *ROWS], "", None, 0),
+        ([json.dumps({"Meas": {"IMU6": MESSAGES}})], "", None, 0),
+        ([json.dumps({"protected": {}, "payload": EDGE_IMPULSE})], "", None, 0),
     ],
-    ids="comments commented-head no-head serial dicts unit yei lists tuples tag clock esp".split(),
+    ids="comments commented-head no-head serial dicts unit yei lists tuples tag clock esp "
+    "labview influx numbered movesense edge-impulse".split(),
 )  # fmt: skip
 def test_text_of_people_is_read(tmp_path, text, mapping, options, lost):
     recording, report = read(tmp_path, "\n".join(text), "in.log", mapping, options=options)
@@ -242,6 +259,8 @@ SECONDS = pd.Timestamp("2026-05-01") + pd.to_timedelta(np.arange(500) // 100, "s
         ({"delay (s)": 0.5, "Zeit (s)": np.arange(500) / 100}, "", 10_000),
         ({"delay (s)": 0.5, "uptime_ms": np.arange(500) * 10}, "", 10_000),
         ({"hhmmss.ms": CLOCK}, "", 10_000),
+        ({"sys_time": np.arange(500) / 100}, "", 10_000),
+        ({"gps_tow": 137_649 + np.arange(500) / 100}, "", 10_000),
         ({"time": RARE.strftime("%H:%M:%S")}, "", 15_000_000),  # over midnight
         ({"header.stamp.sec": SINCE_NS // 10**9, "header.stamp.nanosec": SINCE_NS % 10**9}, "",
          10_000),
@@ -268,11 +287,20 @@ def test_a_rate_overrides_a_time_column_and_says_so(tmp_path):
         *("imu.gyro.{}", "w{}", "gyr_{}", "AngVel{}", "Gyroscope_{}", "{}gyro", "Gy{}", "g{}_mean"),
         *("w_RS_S_{} [rad s^-1]", "raw_angular_rate_{}_rad_per_s", "{} (rad/sec)", "g{}_rad_s"),
         *("{}-axis (rad/s)", "imu rate {} [radians per second]", "UncompGyro{}", "{}_rate"),
-        *("g{}1", "gyro_{}_2", "gyroscope_lsm6ds3_c.{}", "gyro {} (in radians/s)"),
+        *(
+            "imu2_g{}",
+            "imu1.wb[{}]",
+            "g{}1",
+            "gyro_{}_2",
+            "gyroscope_lsm6ds3_c.{}",
+            "gyro {} (in radians/s)",
+        ),
     ],
 )
 def test_usual_names_and_units_of_rates_are_known(tmp_path, name):
-    axes = {"UncompGyro{}": "012", "{}_rate": ("roll", "pitch", "yaw")}.get(name, "xyz")
+    axes = {"UncompGyro{}": "012", "imu1.wb[{}]": "012", "{}_rate": ("roll", "pitch", "yaw")}.get(
+        name, "xyz"
+    )
     frame = rates(["t_s", *map(name.format, axes)], 300)
     is_named = "rad" in name
     frame.iloc[:, 1:] = np.radians(frame.iloc[:, 1:]) if is_named else frame.iloc[:, 1:]
@@ -281,12 +309,22 @@ def test_usual_names_and_units_of_rates_are_known(tmp_path, name):
 
 
 @pytest.mark.parametrize(
-    ("name", "size"), [("accel_{}_ug", 1e6), ("Corrected Accelerometer Vector {} (g)", 1.0)]
+    ("name", "size"),
+    [("accel_{}_ug", 1e6), ("imu1.fb{}", 9.80665), ("Corrected Accelerometer Vector {} (g)", 1.0)],
 )
 def test_usual_names_and_units_of_forces_are_known(tmp_path, name, size):
     force = {name.format(axis): table(300)[f"a{axis}_g"] * size for axis in "xyz"}
     recording, _ = read(tmp_path, table(300)[HEAD.split(",")].assign(**force))
     assert recording.accel_g().mean(axis=0) == pytest.approx([0, 0, 1], abs=0.01)
+
+
+@pytest.mark.parametrize("name", ["gyroRotation{}", "rotationRate.{}"])
+def test_rates_beside_the_acceleration_of_a_user_are_those_of_coremotion(tmp_path, name):
+    frame = rates(["t_s", *map(name.format, "xyz"), *(f"userAcceleration.{a}" for a in "xyz")], 300)
+    frame.iloc[:, 1:4] = np.radians(frame.iloc[:, 1:4])
+    recording, report = read(tmp_path, frame)
+    assert recording.gyro_dps().mean() == pytest.approx(0.8, abs=0.02)
+    assert told(report, "gyro taken in rad/s: as CoreMotion writes")
 
 
 @pytest.mark.parametrize(("unit", "dps"), [("dps", 1.0), ("rad/s", 57.29578)])

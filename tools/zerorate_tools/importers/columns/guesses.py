@@ -218,7 +218,7 @@ def likely_time(values: np.ndarray) -> str:
 
 
 def by_habit(target: str, column: str, names: list[str]) -> tuple[str, str] | None:
-    """Units that go with names: those of ROS, ArduPilot, PX4, Android's sensors, SparkFun."""
+    """Units that go with names: those of ROS, ArduPilot, PX4, Android, CoreMotion, SparkFun."""
     text, kind = spelled(column), kind_of(target)
     habit = {"gyro": "rad/s", "accel": "m/s2", "time": "ns"}.get(kind)
     if habit is None:
@@ -227,6 +227,8 @@ def by_habit(target: str, column: str, names: list[str]) -> tuple[str, str] | No
         return habit, "as in ROS"
     if "seconds_elapsed" in names:
         return habit, "as Sensor Logger writes"
+    if kind == "gyro" and any("useracceleration" in spelled(name) for name in names):
+        return habit, "as CoreMotion writes"
     if "rtcTime" in names and kind != "time":
         return ("dps" if kind == "gyro" else "mg"), "as OpenLog Artemis writes"
     if "timestamp_sample" in names or {"device_id", "error_count"} <= set(names):

@@ -15,13 +15,15 @@ _GYRO = re.compile(
     r"(?:.*(?:gyroscope|gyrorotation|gyro|gyr|angularvelocity|ang(?:ular)?rate|angvel|rotationrate|omega)"
     rf"\d?{_CHIP}(?:uncalibrated|uncal|calibrated|corrected|unfilt|adc|raw|rad|data|rate|dps|values?"
     r"|static|noise){0,2}"
-    r"|(?:.*imu)?(?:gy|[wg]|pqr))" + f"{_AXIS}{_MADE}{_NUMBER}$|^{_AXIS}(?:gyroscope|gyro|gyr)$"
+    r"|(?:.*imu\d*)?(?:gy|[wg]|wb|pqr))"
+    + f"{_AXIS}{_MADE}{_NUMBER}$|^{_AXIS}(?:gyroscope|gyro|gyr)$"
 )
 _ACCEL = re.compile(
     r"(?:.*(?:accelerometer|acceleration|accel|acc|specificforce)"
     rf"\d?{_CHIP}(?:uncalibrated|uncal|calibrated|smooth|adc|raw|data|ms2|m?g|values?|vector|ln|wr|static"
     r"|noise){0,2}"
-    r"|(?:.*imu)?(?:ac?|gf))" + f"{_AXIS}{_MADE}{_NUMBER}$|^{_AXIS}(?:accelerometer|accel|acc)$"
+    r"|(?:.*imu\d*)?(?:ac?|gf|fb))"
+    + f"{_AXIS}{_MADE}{_NUMBER}$|^{_AXIS}(?:accelerometer|accel|acc)$"
 )
 #: Less gravity, or gravity as a filter has it: no measure of it.
 _FREE = re.compile(r".*(?:freeacc|useracc|linacc|gravity)|lacc")
@@ -40,7 +42,7 @@ _CAPITAL_T = re.compile("T(?![A-Za-z])")
 _TIME = re.compile(
     r"(?:t|ts|times?|timestamps?|timestampsample|now|stamp|.*time[mun]s|secondselapsed|datetime|"
     r"date|utc|milli(?:s|seconds)|micro(?:s|seconds)|loggingtime|.*timestamp(?:unix|sincereboot)?(?:cal)?|.*headerstamp|sampletime|"
-    r"gpst|gpstime|tow|timeofweek|elapsed|elapsedtime|epoch?|.*offsettime|timestartup|timesincestart(?:in)?|rtctime|"
+    r"gpst|gpstime|(?:gps)?tow|sys(?:tem)?time|timeofweek|elapsed|elapsedtime|epoch?|.*offsettime|timestartup|timesincestart(?:in)?|rtctime|"
     r"(?:sys|gyro|imu)ts)$"
 )
 _STEP = re.compile("(?:d|delta)t(?:ime)?|timestep|(?:sampl(?:e|ing))?(?:interval|period)")

@@ -232,6 +232,9 @@ def _of_another_sensor(table: Table, path: Path) -> str:
     three = list(usual.bare_axes(table.names).values())
     if any(map(usual.of_other_unit, three)):
         return f"the unit of {three[0]!r}"
+    others = [name for name in table.names if name not in usual.in_units_of_time(table.names)]
+    if others and all(map(usual.of_other_unit, others)):
+        return "the units of all columns"
     named_xyz = [name for name in three if name.lower() not in usual.BODY_RATES.values()]
     if named_xyz and gravity_unit(list(table.first_rows(three).values())):
         return "they are as long as gravity"
@@ -316,7 +319,7 @@ def left_aside(plan: Plan, table: Table) -> list[str]:
 def _of(table: Table) -> str:
     first = table.first_rows(table.names)
     readable = [name for name in table.names if np.isfinite(first[name]).any()]
-    other = [name for name in table.names if name not in readable]
+    other = [name for name in table.names if name and name not in readable]
     words = f"COLUMN one of {_list(readable or table.names)}"
     return words + (f"; {_list(other, _TOLD)}: no number alone in a cell" if other else "")
 

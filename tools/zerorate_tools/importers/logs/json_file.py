@@ -1,6 +1,7 @@
 """JSON: an object a line, a list of objects, an object of lists, or pandas' object of objects.
 
-A line may also be a list of numbers, and what Python prints of a dict, a list or a tuple.
+A line may also be a list of numbers, and what Python prints of a dict, a list or a tuple. A message
+of Movesense, and a file of Edge Impulse, are their samples.
 """
 
 import json
@@ -27,6 +28,8 @@ _LONGEST_LIST = 9
 _UNITS = ("unit", "units")
 _AXIS = re.compile(r"[xyz]$|\]$", re.I)
 _DO = "write an object for each sample, one a line"
+#: The units of the lists in a message of Movesense, whose times are in milliseconds.
+_OF_MOVESENSE = {"ArrayAcc": "m/s2", "ArrayGyro": "dps", "ArrayMagn": "uT"}
 
 
 def read(path: Path, instance: int = 0) -> Table:
@@ -35,7 +38,7 @@ def read(path: Path, instance: int = 0) -> Table:
     if _is_sample(first) and (others.strip() or not _holds_all(_loaded(first))):
         return _of_records(lambda dropped: _lines(path, dropped), path)
     stream = open_text(path, head(path, 4096)[1])[0]
-    held = json.loads(stream.read())
+    held = _of_edge_impulse(_inner(json.loads(stream.read())))
     if isinstance(held, dict) and len(lists := [v for v in held.values() if _is_records(v)]) == 1:
         held = lists[0]
     if _is_records(held):
@@ -45,6 +48,35 @@ def read(path: Path, instance: int = 0) -> Table:
     columns = {k: list(v.values()) if isinstance(v, dict) else v for k, v in held.items()}
     arrays: dict[str, object] = {k: np.array(v) for k, v in columns.items() if isinstance(v, list)}
     return table_of_arrays(arrays, path, _DO)
+
+
+def _inner(held: Any) -> Any:
+    """What objects of one name hold, one within another: {"Meas": {"IMU6": [...]}}."""
+    while isinstance(held, dict) and len(held) == 1 and isinstance([*held.values()][0], dict):
+        [held] = held.values()
+    return held
+
+
+def _of_edge_impulse(held: Any) -> Any:
+    """Its samples as records, where a file is one of Edge Impulse; else the file itself."""
+    load = held.get("payload") if isinstance(held, dict) else None
+    if not isinstance(load, dict) or not {"interval_ms", "sensors", "values"} <= set(load):
+        return held
+    names = [f"{one['name']} [{one['units']}]" for one in load["sensors"]]
+    times = (n * load["interval_ms"] for n in range(len(load["values"])))
+    return [{"t [ms]": t, **dict(zip(names, row))} for t, row in zip(times, load["values"])]
+
+
+def _samples(record: Any) -> Iterator[Any]:
+    """Each sample of a message of Movesense with the message's time; another record as it is."""
+    held = _inner(record)
+    if not isinstance(held, dict) or not _is_records(held.get("ArrayGyro")):
+        yield record
+        return
+    lists = {name: held[name] for name in _OF_MOVESENSE if _is_records(held.get(name))}
+    for row in zip(*lists.values()):
+        sample = {name: {**one, "unit": _OF_MOVESENSE[name]} for name, one in zip(lists, row)}
+        yield {"Timestamp [ms]": held.get("Timestamp"), **sample}
 
 
 def _is_sample(line: bytes) -> bool:
@@ -76,6 +108,9 @@ def _loaded(line: bytes) -> Any:
 
 def _holds_all(held: Any) -> bool:
     """Whether an object is no sample but all of them: columns, or one list of records."""
+    held = _inner(held)
+    if _of_edge_impulse(held) is not held:
+        return True
     values = held.values() if isinstance(held, dict) else ()
     long = [v for v in values if isinstance(v, (dict, list)) and len(v) > _LONGEST_LIST]
     records = sum(map(_is_records, long))
@@ -103,12 +138,16 @@ def _object(line: bytes, dropped: Counter[str]) -> Any:
 
 def _of_records(begun, path: Path) -> Table:
     """begun: makes the records from the first on, of which some may be no object."""
-    first = next(begun(Counter()), None)
+
+    def every(dropped: Counter[str]) -> Iterator[Any]:
+        return chain.from_iterable(map(_samples, begun(dropped)))
+
+    first = next(every(Counter()), None)
     for name, value in first.items() if isinstance(first, dict) else ():
         if _is_records(value) and len(value) > _LONGEST_LIST:
             problem = f"each record holds {len(value)} samples or so, in {name!r}"
             raise BadRecording(path, problem, do=f"{_DO}, each with a time of its own")
-    seen = [dict(_flat(record)) for record in islice(begun(Counter()), _SEEN)]
+    seen = [dict(_flat(record)) for record in islice(every(Counter()), _SEEN)]
     by_name: dict[str, list[Any]] = {}
     for name, value in chain.from_iterable(record.items() for record in seen):
         by_name.setdefault(name, []).append(value)
@@ -122,7 +161,7 @@ def _of_records(begun, path: Path) -> Table:
         raise BadRecording(path, "JSON, and no numbers in it", do=_DO)
 
     def chunks(wanted: list[str]) -> Iterator[Chunk]:
-        place, records = 0, begun(table.dropped)
+        place, records = 0, every(table.dropped)
         while some := [dict(_flat(record)) for record in islice(records, _ROWS)]:
             columns = {n: [record.get(n) for record in some] for n in wanted}
             yield Chunk(

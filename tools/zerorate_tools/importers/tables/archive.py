@@ -127,7 +127,8 @@ def _hold_rates(tables: dict[str, Table]) -> bool:
 def _by_shared_time(tables: dict[str, Table], path: Path) -> Table:
     rates = [stem for stem, table in tables.items() if usual.gyro_groups(table.names)]
     if len(rates) > 1 and not any("gyro" in stem.lower() for stem in rates):
-        problem = f"several recordings ({', '.join(rates)})"
+        more = f" and {len(rates) - _TOLD} more" if len(rates) > _TOLD else ""
+        problem = f"several recordings ({', '.join(rates[:_TOLD])}{more})"
         do = "import them together: zerorate import FILE FILE ... --out FOLDER"
         raise BadRecording(path, problem, do=do)
     times = Counter(name for t in tables.values() for name in usual.time_columns(t.names))

@@ -103,6 +103,9 @@ def sniffed(path: Path) -> Form:
             raise BadRecording(path, "empty file", do="name another file")
         problem = f"no line ends within the first {_HEAD_BYTES >> 10} KiB"
         raise BadRecording(path, problem, do="name a table with a sample on each line")
+    ends = [n for n, line in enumerate(lines) if line.startswith("***End_of_Header***")]
+    if ends:  # LabVIEW names a column of comments that rows do not have
+        lines = [""] * ends[-1] + [line.removesuffix("\tComment") for line in lines[ends[-1] :]]
     labelled = _labelled(lines, encoding)
     if labelled is not None:
         return replace(labelled, arrows=plain != content)
@@ -321,7 +324,7 @@ def _in_comment(comment: str, delimiter: str) -> list[str]:
 
 def _with_those_above(names: list[str], lines: list[str], delimiter: str) -> list[str]:
     """Names that are empty or come twice, behind those of the lines above: gyro over x, y and z."""
-    for line in reversed(lines):
+    for line in reversed([line for line in lines if not line.lstrip().startswith(COMMENTS)]):
         above = [cell.strip() for cell in _cells(line, delimiter)]
         if len(set(names)) == len(names) and all(names) or not _as_many(names, above):
             return names
