@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from zerorate_bench.accuracy import second_power_on
 from zerorate_bench.limits import COST, verdicts
+from zerorate_bench.loop import trials
 from zerorate_bench.loop.devices import Device
 from zerorate_bench.loop.figures import figures, share
 from zerorate_bench.loop.run_trial import Outcome, run_trial
@@ -171,3 +172,10 @@ def test_probabilities_that_were_told_are_held_against_how_often_they_are_right(
     assert said[f"{name} 0.35 to 0.65: off"].met and said[f"{name} 0.35 to 0.65: off"].devices == 6
     assert said[f"{name} 0.65 to 1: off"].value == 100.0
     assert not said[f"{name} 0.65 to 1: off"].met
+
+
+def test_time_and_memory_of_the_loop_are_a_row_of_their_own(monkeypatch):
+    cost = {"seconds": 70.0, "cpu_s": 1.0, "gb": 0.5}
+    monkeypatch.setattr(trials, "close_cost", lambda write: cost)
+    found = trials.run(rows="sessions of 8 h")["figures"]
+    assert [(f["value"], f["met"]) for f in found] == [(70.0, False), (1.0, None), (0.5, True)]

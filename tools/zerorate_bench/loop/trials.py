@@ -23,6 +23,7 @@ from .run_trial import Outcome, run_trial
 from .simulated import FOLDER, write_blocks
 
 SESSIONS, HOURS, HZ = 4, 8, 100.0
+SIZE = f"{SESSIONS} sessions of {HOURS} h at {HZ:g} Hz"
 MOST_S, MOST_GB = 60.0, 2.0
 _DEVICE = {
     "sessions": SESSIONS,
@@ -52,11 +53,10 @@ _MOST_EXAMPLES = 20
 
 def figures_of(size: dict) -> list[Figure]:
     """Time and memory beside their limits."""
-    name = f"{SESSIONS} sessions of {HOURS} h at {HZ:g} Hz: "
     return [
-        Figure(name + "seconds by the clock", size["seconds"], MOST_S, True, 1, unit="s"),
-        Figure(name + "seconds of processor", size["cpu_s"], None, True, 1, unit="s"),
-        Figure(name + "memory", size["gb"], MOST_GB, True, 1, unit="GB"),
+        Figure(f"{SIZE}: seconds by the clock", size["seconds"], MOST_S, True, 1, unit="s"),
+        Figure(f"{SIZE}: seconds of processor", size["cpu_s"], None, True, 1, unit="s"),
+        Figure(f"{SIZE}: memory", size["gb"], MOST_GB, True, 1, unit="GB"),
     ]
 
 
@@ -124,8 +124,8 @@ def run(
 
     nulls: devices of each kind of nothing; seeds: devices an effect; data: folder of the real
     recordings, else ZERORATE_DATA, else none; resume: a file of outcomes, one a line, that a run
-    broken off goes on from; rows: only devices whose key holds this text,
-    and nothing else.
+    broken off goes on from; rows: only devices whose key holds this text, and
+    the time and memory where their row does.
     """
     folder = Path(data) if data else data_folder()
     with tempfile.TemporaryDirectory() as scratch:
@@ -136,7 +136,9 @@ def run(
         seen = list(looked_at(every, processes, Path(resume) if resume else None, advance))
     found = figures(seen, whole=not rows)
     if not rows:
-        found += rest_figures() + figures_of(close_cost(_WRITE))
+        found += rest_figures()
+    if not rows or rows in SIZE:
+        found += figures_of(close_cost(_WRITE))
     result: dict = {"devices": len(seen), "machine": machine()}
     result["cpu_s_a_device"] = sum(o.cpu_s for o in seen) / max(len(seen), 1)
     if folder and folder.is_dir() and not rows:
