@@ -257,15 +257,15 @@ def log(tmp_path):
 
 def test_a_log_with_an_attitude_tells_the_heading_that_its_own_other_half_wins(log):
     won = matrix_of([log(1, attitude=True)])
-    assert won.deployed and won.tilt[1] < 0.5 * won.tilt[0]
+    assert won.deployed and won.turned[1] < 0.5 * won.turned[0]
     assert won.heading[1] < 0.3 * won.heading[0]
     assert won.heading[0] > 1.0
-    assert "of heading" in won.sentence() and len(won.rows()) == 2
+    assert "of heading" in won.sentence() and len(won.rows()) == 3
 
 
 def test_right_axes_win_nothing(log):
     won = matrix_of([log(4, matrix=np.zeros((3, 3)), attitude=True)])
-    assert not won.deployed and won.heading is None and len(won.rows()) == 1
+    assert not won.deployed and won.heading is None and len(won.rows()) == 2
 
 
 def test_a_device_that_rests_says_nothing_of_motion(tmp_path):

@@ -59,7 +59,12 @@ def compared_on_a_page(logs, folder):
     bare = read_recording(logs[0], keep_gaps=True)
     columns = {n: of for n, of in bare.columns.items() if n not in ("ax", "ay", "az")}
     write_recording(replace(bare, columns=columns), folder / "bare.parquet")
-    won = [None, Won((2.1, 1.2), (3.4, 0.5), True), Won((2.1, 2.1)), Won(refused="of <two>")]
+    won = [
+        None,
+        Won((2.1, 1.2), heading=(3.4, 0.5), deployed=True),
+        Won((2.1, 2.1)),
+        Won(refused="of <two>"),
+    ]
     with mock.patch.object(peers, "_ROWS", 700), _closed() as figures:
         every = [compare(logs), compare([folder / "bare.parquet"]), None, None]
         found = {}

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from zerorate_tools.errors import BadRecording
 from zerorate_tools.importers import Options, parsed_mapping
@@ -135,6 +135,7 @@ SIZES = {name: st.floats(0.1, most) for name, most in (("rate", 2040.0), ("force
 
 
 @given(SIZES["rate"], SIZES["force"], st.sampled_from([0.02, 3.0]))
+@example(1.0, 7.99967, 0.02)  # rounds to the rail of 8 g
 def test_the_scale_is_the_finest_that_holds_every_reading(rate, force, step_s):
     n = 80
     ups = np.where(np.arange(n) % 2, 1.0, -1.0)
@@ -143,9 +144,11 @@ def test_the_scale_is_the_finest_that_holds_every_reading(rate, force, step_s):
     columns["az_g"][7] = force
     found, scales, report = imported(columns)
     ranges = [1000.0, 500.0, 200.0] * (step_s > 2) + [131.0, 65.5, 32.8, 16.4]
-    fit = [lsb for lsb in ranges if rate * lsb < 32767]
+    fit = [lsb for lsb in ranges if rate * lsb < 32766.5]
     assert scales.gyro_lsb_per_dps == (fit or ranges[-1:])[0]
-    assert scales.accel_lsb_per_g == max(r for r in (2048, 4096, 8192, 16384) if force * r < 32767)
+    assert scales.accel_lsb_per_g == max(
+        r for r in (2048, 4096, 8192, 16384) if force * r < 32766.5
+    )
     assert bool(report.clipped) == (not fit)
     assert found["gx"].max() == round(min(rate * scales.gyro_lsb_per_dps, 32767))
     assert ("row_is_mean_of_s" in scales.more) == (step_s > 2)

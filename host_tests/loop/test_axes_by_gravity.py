@@ -18,7 +18,7 @@ from zerorate_tools.loop.read.gate import CannotClose
 from zerorate_tools.recordings import Recording, Scales
 from zerorate_tools.recordings.writing import write_recording
 from zerorate_tools.simulate import simulate_sessions
-from zerorate_tools.simulate.attitude import IDENTITY, integrate, into_body, multiply
+from zerorate_tools.simulate.attitude import IDENTITY, integrate, into_body, multiply, rotation
 
 from .test_report_form import breaches
 
@@ -103,6 +103,23 @@ def test_with_an_attitude_the_heading_of_what_was_held_out_is_told(recorded, tmp
     assert motion["heading_before"] > 1.0
     assert motion["heading_after"] < 0.4 * motion["heading_before"]
     assert "degrees a minute of heading" in (tmp_path / "closed" / "report.html").read_text()
+
+
+@pytest.mark.parametrize(
+    ("mounted_deg", "turned"), [((3.0, -5.0, 2.0), 0.03), ((20.0, -80.0, 120.0), 0.0)]
+)
+def test_how_a_body_is_mounted_is_told_from_how_the_axes_are_turned(tmp_path, mounted_deg, turned):
+    matrix = _MATRIX + turned * np.array([[0.0, 0.0, 1.0], [0.0, 0.0, 0.0], [-1.0, 0.0, 0.0]])
+    logs = [tmp_path / f"run-{seed}.parquet" for seed in (20, 22)]
+    for seed, log in zip((20, 22), logs):
+        recording = handled(seed, matrix, seen=True)
+        names = [f"q{part}" for part in "wxyz"]
+        attitude = np.column_stack([recording.columns[q] for q in names])
+        body = multiply(attitude, rotation(np.array(mounted_deg)))
+        recording.columns.update(zip(names, np.rint(body).astype(np.int64).T))
+        write_recording(recording, log)
+    motion = close(logs, tmp_path / "closed")["in_motion"]
+    assert np.abs(np.array(motion["matrix_percent"]) / 100 - matrix).max() < 0.002
 
 
 def test_a_matrix_of_one_half_that_makes_the_heading_of_the_other_worse_is_not_deployed(tmp_path):

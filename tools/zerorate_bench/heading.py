@@ -82,7 +82,7 @@ def _by_optics(every, moving, groups) -> dict[str, list[float]]:
     other trials of each group."""
     seen = {}
     for name, trial in every.items():
-        fitted = beside(replace(moving[name], given=trial.attitude), np.zeros((3, 3)))
+        fitted = beside(replace(moving[name], given=trial.attitude, mounted=True), np.zeros((3, 3)))
         seen[name] = Shown() if fitted is None else fitted.shown(np.zeros((3, 3)))
     return {
         name: [
@@ -105,7 +105,7 @@ def _half(trial: Trial, moving: Moving, group: int) -> dict:
     at = np.flatnonzero(trial.moving)
     middle = int((at[0] + at[-1]) / 2)
     first, second = slice(middle), slice(middle, None)
-    seen = replace(moving.part(second), given=trial.attitude[second])
+    seen = replace(moving.part(second), given=trial.attitude[second], mounted=True)
     bound = heading_error_deg(trial, fit([seen])[0], 0.5)
     return {**_row(trial, group, by_windows([moving.part(first)], []), 0.5), "bound": bound}
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from .loop.motion.by_windows import GIVEN, UNIT, RateScale, by_windows, nothing_in_words
+from .loop.motion.by_windows import GIVEN, UNIT, RateScale, by_windows, seen_in_words
 from .loop.motion.moving import moving_of
 from .loop.motion.scales_and_timing import InMotion, slots_of
 from .loop.read.ticks import AnyPath, Ticks
@@ -132,7 +132,7 @@ def motion_in_words(result: Mapping[str, Any]) -> str:
             for axis, values, spread in rows
         ]
     else:
-        lines = [f"found: {nothing_in_words(m['before'], m['unit'])}"]
+        lines = [f"found: nothing in motion; {seen_in_words(m['before'], m['unit'])}"]
     lines += [f"not seen in this motion: {', '.join(m['not_seen'])}"] if m["not_seen"] else []
     lines.append(f"note: {result['unexplained']['what_is_known']}")
     return "\n".join([*lines, *(f"next: {a}" for a in result["unexplained"]["measure_next"])])

@@ -4,21 +4,23 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..loop.motion.by_windows import by_windows
+from ..loop.motion.by_windows import GRAVITY, UNIT, by_windows, seen_in_words
 from ..loop.motion.moving import moving_of
 from ..loop.read.gate import CannotClose
 
-WITHOUT, WITH = "without the matrix", "with the matrix that gravity shows"
+HEAD = "in motion, deg/min, left out"
+WITHOUT, WITH = "without the matrix", "with the matrix"
 
 
 @dataclass(frozen=True)
 class Won:
-    """tilt: degrees a minute of windows left out, without and with; heading: the same of heading
-    against the given attitude, None without one; deployed: whether `close` would deploy it;
-    refused: why the logs are not of one device, "" where they are.
+    """turned: degrees a minute of windows left out, without and with; unit: what turns them;
+    heading: the same of heading against the given attitude, None without one; deployed: whether
+    `close` would deploy it; refused: why the logs are not of one device, "" where they are.
     """
 
-    tilt: tuple[float, float] = (float("nan"), float("nan"))
+    turned: tuple[float, float] = (float("nan"), float("nan"))
+    unit: str = UNIT[GRAVITY]
     heading: tuple[float, float] | None = None
     deployed: bool = False
     refused: str = ""
@@ -26,27 +28,27 @@ class Won:
     def sentence(self) -> str:
         if self.refused:
             return f"In motion: {self.refused}."
-        before, after = self.tilt
+        before, after = self.turned
         if not self.deployed:
-            return (
-                f"In motion no matrix would lower the tilt error, {before:.2f} deg a minute "
-                "against gravity. It includes the device's own acceleration."
-            )
+            return f"In motion no matrix would lower the error: {seen_in_words(before, self.unit)}."
         more = ""
         if self.heading is not None:
             more = f", and {self.heading[1]:.2f} of {self.heading[0]:.2f} of heading"
         return (
-            f"In motion the matrix of `zerorate close` would leave {after:.2f} of {before:.2f} deg "
-            f"of tilt a minute{more}, on windows left out."
+            f"In motion the matrix of `zerorate close` would leave {after:.2f} of {before:.2f} "
+            f"{self.unit}{more}, on windows left out."
         )
 
     def rows(self) -> list[tuple[str, str, str, str]]:
-        """A row each, without and with: its name, tilt, heading, both in degrees a minute."""
+        """A head, and a row each, without and with: its name, what turns windows, heading, both in
+        degrees a minute."""
         if self.refused:
             return []
         names = (WITHOUT, WITH) if self.deployed else (WITHOUT,)
-        headings = [f"{h:.2f}" for h in self.heading] if self.heading else ["no attitude"] * 2
-        return [(n, f"{t:.2f}", h, "") for n, t, h in zip(names, self.tilt, headings)]
+        none = "no attitude" if self.unit == UNIT[GRAVITY] else ""
+        headings = [f"{h:.2f}" for h in self.heading] if self.heading else [none] * 2
+        head = (HEAD, self.unit.rpartition(" ")[2], "heading", "")
+        return [head, *((n, f"{t:.2f}", h, "") for n, t, h in zip(names, self.turned, headings))]
 
 
 def matrix_of(logs: Sequence[str | Path]) -> Won | None:
@@ -60,4 +62,5 @@ def matrix_of(logs: Sequence[str | Path]) -> Won | None:
         return Won(refused=str(problem))
     if shown is None:
         return None
-    return Won((shown.before, shown.after), shown.heading if shown.found else None, shown.found)
+    heading = shown.heading if shown.found else None
+    return Won((shown.before, shown.after), shown.unit, heading, shown.found)

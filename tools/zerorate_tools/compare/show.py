@@ -20,7 +20,6 @@ from matplotlib.ticker import LogFormatter  # noqa: E402
 _COLOURS = ("#8d8d93", "#d55e00", "#cc79a7", "#d98200", "#56b4e9", "#0072b2")
 _MARKS = "xsv^oD"
 _HEAD = ("way", "error, deg/s", "heading lost, deg/min", "against the first rest")
-_MOTION_HEAD = ("in motion, deg/min, left out", "tilt", "heading", "")
 #: A drawing in inches, at 10 points, for a desk and for a phone of 390 CSS pixels.
 _WIDE, _NARROW = (9.0, 4.5), (3.7, 4.4)
 _NOTE = (
@@ -67,7 +66,7 @@ def table(compared: Compared) -> str:
 
 def in_motion(won: Won) -> str:
     """What the matrix would win: the sentence and its rows, in plain text."""
-    lines = [_MOTION_HEAD, *won.rows()] if won.rows() else []
+    lines = won.rows()
     return "\n".join([won.sentence(), *([""] if lines else []), *_aligned(lines)])
 
 
@@ -116,8 +115,7 @@ def _rests_html(compared: Compared) -> str:
 def _motion_html(won: Won | None) -> str:
     if won is None:
         return ""
-    lines = [_MOTION_HEAD, *won.rows()] if won.rows() else []
-    cells = ["".join(f"<td>{html.escape(cell)}</td>" for cell in line[:3]) for line in lines]
+    cells = ["".join(f"<td>{html.escape(cell)}</td>" for cell in row[:3]) for row in won.rows()]
     table = "".join(f"<tr>{row}</tr>" for row in cells)
     return f"<h2>{html.escape(won.sentence())}</h2><table>{table}</table>"
 

@@ -12,7 +12,7 @@ from .fit.cross_products import whitener
 from .fit.line import deployed
 from .fit.noise import floor_dps
 from .fit.single import PiecesByLine
-from .motion.by_windows import nothing_in_words
+from .motion.by_windows import seen_in_words
 from .motion.scales_and_timing import (
     InMotion,
     in_motion,
@@ -69,7 +69,9 @@ def analyse(
     if shown is not None:
         gate.notes += shown.notes
         if gate.moving and not shown.found:
-            gate.notes.append(f"found: {nothing_in_words(shown.before, shown.unit)}")
+            gate.notes.append(
+                f"found: nothing in motion; {seen_in_words(shown.before, shown.unit)}"
+            )
     sessions = [without_scales(s, motion) for s in sessions]
     whiteners = [whitener(s.available) for s in sessions]  # while they live nobody makes them anew
     clean = remove_steps(sessions)

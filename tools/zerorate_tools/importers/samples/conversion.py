@@ -119,7 +119,7 @@ def fitting_scales(
 
 def _fitting(kind, unit, ranges, common: Common, notes) -> float:
     largest = common.largest[kind]
-    lsb = next((lsb for lsb in ranges if largest * lsb < _RAIL), ranges[-1])
+    lsb = next((lsb for lsb in ranges if largest * lsb < _RAIL - 0.5), ranges[-1])
     ends = round(32768 / lsb, -1 if kind == "gyro" else 0)
     fastest = "fastest rate" if kind == "gyro" else "strongest acceleration"
     notes.append(f"Stored at the +-{ends:g} {unit} scale ({fastest}: {largest:.4g} {unit})")

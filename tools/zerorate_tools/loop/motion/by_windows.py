@@ -9,7 +9,7 @@ from scipy.stats import chi2
 from .columns import MATRIX
 from .device import LEVEL, check_one_device, device_of, groups
 from .heading import heading_lost
-from .matrix import FOLDS, beside, fit, of_what_shows_more
+from .matrix import FOLDS, beside, by_recording, fit, of_what_shows_more
 from .moving import Moving, check_axes
 
 
@@ -76,12 +76,11 @@ GRAVITY, GIVEN = "gravity while it moved", "the reference given"
 UNIT = {GRAVITY: "degrees a minute of tilt", GIVEN: "degrees a minute of turn"}
 
 
-def nothing_in_words(before: float, unit: str) -> str:
-    """What is said where motion shows no matrix. before: RMS of what turns windows, in the unit."""
+def seen_in_words(before: float, unit: str) -> str:
+    """What is left where motion shows no matrix. before: RMS of what turns windows, in the unit."""
     if unit == UNIT[GIVEN]:
-        return f"nothing in motion; the reference sees {before:.2f} {unit}"
-    among = "the device's own acceleration among it"
-    return f"nothing in motion; gravity sees {before:.2f} {unit}, {among}"
+        return f"the reference sees {before:.2f} {unit}"
+    return f"gravity sees {before:.2f} {unit}, the device's own acceleration among it"
 
 
 #: Posterior sigma of an entry above which the motion did not show it: a data sheet's 0.5 %.
@@ -145,25 +144,30 @@ def _by_windows(train: list[Moving], holdout: list[Moving]) -> RateScale | None:
     matrix, fitted = fit(train)
     if not fitted:
         return None
-    check_one_device([(f.moving.name, f.shown(matrix)) for f in fitted])
-    device = device_of([f.shown(matrix) for f in fitted])
-    share = device.share([f.heading for f in fitted])
+    statements = by_recording((f, f.shown(matrix)) for f in fitted)
+    check_one_device(list(statements.items()))
+    device = device_of(list(statements.values()))
+    share = device.share(list({f.moving.name: f.heading for f in fitted}.values()))
     entries, covariance, shown = device.entries, device.covariance, device.shown
     # small sizes are the better guess; how far off it is, is not said as if they were known
-    wide = device_of([f.shown(matrix) for f in fitted], large=True)
+    wide = device_of(list(statements.values()), large=True)
     deviation = np.sqrt(np.diag(wide.covariance) + (wide.entries - entries) ** 2)
-    held = [f for f in (beside(m, matrix) for m in holdout) if f is not None]
+    ways = [way for m in holdout for way in m.measured]
+    held = [f for f in (beside(m, matrix) for m in ways) if f is not None]
     left_out = list(_folds(fitted, matrix, share))
     judged = [(f, None, share * entries) for f in held] or left_out
     if not judged:
         return None
     gain, predicted = (_gain(some, matrix) for some in (judged, left_out))
+    given = {f.moving.name for f in fitted if f.moving.given is not None}
+    reference = GIVEN if given >= statements.keys() else GRAVITY
+    by_it = [f for f in fitted if (f.moving.given is not None) == (reference == GIVEN)]
+    told = [j for j in judged if (j[0].moving.given is not None) == (reference == GIVEN)]
     before, after = (
-        _tilt([f.tilts(matrix, x, k) for f, k, m in judged for x in [0.0 * m if bare else m]])
+        _tilt([f.tilts(matrix, x, k) for f, k, m in told for x in [0.0 * m if bare else m]])
         for bare in (True, False)
     )
     fastest = np.degrees(np.max([np.abs(f.moving.rate).max(axis=0) for f in fitted], axis=0))
-    reference = GIVEN if all(f.moving.given is not None for f in fitted) else GRAVITY
     unseen = np.sqrt(np.diag(np.linalg.pinv(shown.normal + _FAINT))) > UNSEEN
     return RateScale(
         matrix=entries.reshape(3, 3),
@@ -179,7 +183,7 @@ def _by_windows(train: list[Moving], holdout: list[Moving]) -> RateScale | None:
         before=before,
         after=after,
         unit=UNIT[reference],
-        runs=sum(len(f.rows.errors) for f in fitted),
+        runs=sum(len(f.rows.errors) for f in by_it),
         fastest_dps=fastest,
         unseen=unseen.reshape(3, 3),
     )
@@ -194,7 +198,8 @@ def _folds(fitted, matrix, share):
     for k in range(FOLDS):
         left = [f for f in fitted if (f.folds == k).any() and (f.folds != k).any()]
         if left:
-            entries = device_of([f.without(matrix, k) for f in fitted]).entries
+            said = by_recording((f, f.without(matrix, k)) for f in fitted)
+            entries = device_of(list(said.values())).entries
             yield from ((f, k, share * entries) for f in left)
 
 

@@ -11,23 +11,24 @@ import numpy as np
 from scipy.signal import welch
 from scipy.spatial.transform import Rotation
 
-from ...simulate.attitude import IDENTITY, integrate, into_body, multiply
+from ...simulate.attitude import IDENTITY, integrate, into_body, multiply, rotation
 from .moving import Moving
 
 #: Names of the columns: the matrix by rows, then what each recording has of its own.
 MATRIX = 9
 OWN = {"bias": 3, "drift": 3, "accel_bias": 3, "accel_shape": 5}
-OWN |= {"delay": 1, "velocity": 3, "lever": 3}
+OWN |= {"mounting": 3, "delay": 1, "velocity": 3, "lever": 3}
 _AT = np.cumsum([0, *OWN.values()])
-BIAS, DRIFT, ACCEL_BIAS, ACCEL_SHAPE = (slice(a, b) for a, b in zip(_AT[:4], _AT[1:5]))
+BIAS, DRIFT, ACCEL_BIAS, ACCEL_SHAPE, MOUNTING = (slice(a, b) for a, b in zip(_AT[:5], _AT[1:6]))
 #: Columns of what is neither a rate nor a delay.
 _NOT_RATES = sum(OWN.values()) - OWN["bias"] - OWN["drift"] - OWN["delay"]
+_SHAPED = OWN["accel_bias"] + OWN["accel_shape"]
 #: Standard deviations before a recording is seen: rad/s, rad/s a segment, g, share, s, m/s, m. A
-#: part's zero-rate output and accelerometer by their data sheets, a chip's filters, a walk along an
-#: axis of the body, an arm's length.
+#: part's zero-rate output and accelerometer by their data sheets, markers that are set by eye, a
+#: chip's filters, a walk along an axis of the body, an arm's length.
 OWN_SIGMA = {
     **{"bias": np.radians(20.0), "drift": np.radians(0.001), "accel_bias": 0.05},
-    **{"accel_shape": 0.02, "delay": 0.01, "velocity": 1.5, "lever": 0.3},
+    **{"accel_shape": 0.02, "mounting": 0.3, "delay": 0.01, "velocity": 1.5, "lever": 0.3},
 }
 #: Rows reach up to this frequency: above it a hand shakes as it turns, which looks like an error.
 MOST_HZ = 0.5
@@ -47,7 +48,7 @@ class Columns:
     what is louder than rows; theta: (m, 3, r) what a unit of each rate error has turned that frame
     by; own: (m, 3, s) the attitude, and g that a unit of each error adds without gravity; off:
     (m, 4) turn from the frame of the attitude that is given to that frame; step_s: seconds between
-    them.
+    them; mounted: whether the attitude is of a body that is fixed to the sensor.
     """
 
     at: np.ndarray
@@ -57,6 +58,7 @@ class Columns:
     own: np.ndarray
     off: np.ndarray | None
     step_s: float
+    mounted: bool
 
     def of(self, steps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(k, 3) specific force of steps (k,), or what the attitude given says that the frame has
@@ -67,8 +69,10 @@ class Columns:
         turned[..., -1] = theta[..., -1]  # a delay turns at once
         at_s = ((steps - steps[0]) * self.step_s)[:, None, None]
         if self.off is not None:
-            nothing = np.zeros((len(steps), 3, _NOT_RATES))
-            return _apart(self.off[steps]), _in_columns(-turned, nothing, -at_s * np.eye(3))
+            other = np.zeros((len(steps), 3, _NOT_RATES))
+            if self.mounted:
+                other[..., _SHAPED : _SHAPED + 3] = own[len(own) // 2, :, :3] - own[..., :3]
+            return _apart(self.off[steps]), _in_columns(-turned, other, -at_s * np.eye(3))
         seen, attitude = self.seen[steps], own[..., :3]
         gravity = seen.mean(axis=0)
         force = gravity + self.loud[steps]
@@ -76,6 +80,7 @@ class Columns:
         by_turn = at_s * _across(gravity[None], np.eye(3)[None])
         felt = np.einsum("mai,ma->mi", attitude, force)
         shape = attitude @ np.tensordot(felt, _SHAPES, (1, 2)).transpose(0, 2, 1)
+        shape = np.concatenate([shape, np.zeros((len(steps), 3, OWN["mounting"]))], axis=2)
         own = np.concatenate([attitude, shape, own[..., 3:]], axis=2)
         return seen, _in_columns(by_rate, own, by_turn)
 
@@ -88,7 +93,8 @@ def _across(force: np.ndarray, turned: np.ndarray) -> np.ndarray:
 
 def _in_columns(by_rate: np.ndarray, own: np.ndarray, by_turn: np.ndarray) -> np.ndarray:
     """All columns in the order of OWN."""
-    parts = [by_rate[..., :-1], own[..., :8], by_rate[..., -1:], own[..., 8:], by_turn]
+    late = _SHAPED + OWN["mounting"]
+    parts = [by_rate[..., :-1], own[..., :late], by_rate[..., -1:], own[..., late:], by_turn]
     return np.concatenate(parts, axis=2)
 
 
@@ -109,13 +115,14 @@ def columns_of(moving: Moving, matrix, own) -> Columns:
     per = max(1, round(1.0 / (_COLUMNS_HZ * moving.dt_s)))
     chunk, whole = per * _CHUNK, len(moving.rate) // per * per
     attitude, theta, parts, offs = IDENTITY, np.zeros((3, MATRIX + 6)), [], []
+    back = rotation(-np.degrees(own[MOUNTING]))
     starts = list(range(0, whole - 1, chunk))  # one sample alone has no slope: it joins the last
     for first, end in zip(starts, [*starts[1:], whole]):
         span = slice(first, end)
         attitudes, steps, late, seen, added = _chunk_of(moving, span, per, attitude, matrix, own)
         attitude = attitudes[-1]
         if moving.given is not None:
-            offs.append(_off(moving.given[span], attitudes, per))
+            offs.append(_off(multiply(moving.given[span], back), attitudes, per))
         ends = np.cumsum(steps[0], axis=0) + theta
         middle = ends - steps[0] + steps[1]
         theta = ends[-1]
@@ -123,7 +130,8 @@ def columns_of(moving: Moving, matrix, own) -> Columns:
     seen, theta, own = (np.concatenate(p) for p in zip(*parts))
     step_s = per * moving.dt_s
     off = np.concatenate(offs) if offs else None
-    return Columns(np.arange(len(seen)) * per, seen, _loud(seen, step_s), theta, own, off, step_s)
+    at, loud = np.arange(len(seen)) * per, _loud(seen, step_s)
+    return Columns(at, seen, loud, theta, own, off, step_s, moving.mounted)
 
 
 def _loud(seen: np.ndarray, step_s: float) -> np.ndarray:

@@ -9,11 +9,10 @@ from scipy.spatial.transform import Rotation
 from ...simulate.attitude import IDENTITY, integrate
 from .columns import BIAS
 from .matrix import beside
-from .moving import LEAST_DPS, Moving
+from .moving import LEAST_DPS, W_LAST, Moving, turned_between
 
 #: Headings are told over stretches of this length: filters with a magnetometer forget as soon.
 _STRETCH_S = 30.0
-_W_LAST = [1, 2, 3, 0]
 
 
 def heading_lost(
@@ -47,16 +46,16 @@ def _lost(one: Moving, matrix: NDArray) -> NDArray[np.float64]:
     steps = [(a, b) for a, b in steps if seen[a] and seen[b]]
     if not ends or not steps:
         return np.zeros(0)
-    frame, _ = Rotation.align_vectors(*(_turned(q, steps).as_rotvec() for q in (attitude, ours)))
-    first = Rotation.from_quat(attitude[[a for a, _ in ends]][:, _W_LAST])
-    left = first * _turned(attitude, ends) * (frame * _turned(ours, ends) * frame.inv()).inv()
+    frame, _ = Rotation.align_vectors(
+        *(turned_between(q, steps).as_rotvec() for q in (attitude, ours))
+    )
+    first = Rotation.from_quat(attitude[[a for a, _ in ends]][:, W_LAST])
+    left = (
+        first
+        * turned_between(attitude, ends)
+        * (frame * turned_between(ours, ends) * frame.inv()).inv()
+    )
     return np.degrees((left * first.inv()).as_rotvec()[:, 2]) / _STRETCH_S
-
-
-def _turned(attitude: NDArray, ends: list[tuple[int, int]]) -> Rotation:
-    """From the first to the last sample of each pair, in the body's frame."""
-    first, last = (Rotation.from_quat(attitude[list(at)][:, _W_LAST]) for at in zip(*ends))
-    return first.inv() * last
 
 
 def _stretches(one: Moving, seen: NDArray) -> list[tuple[int, int]]:

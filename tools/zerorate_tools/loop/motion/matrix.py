@@ -5,12 +5,13 @@ its accelerometer's errors, a delay and a lever arm. All are fitted beside them.
 The noise is the hand's acceleration: its spectrum comes from the residuals of each recording.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.ndimage import uniform_filter1d
 
-from .columns import ACCEL_SHAPE, BIAS, DRIFT, LONGEST_S, MATRIX, OWN, OWN_SIGMA
+from .columns import BIAS, DRIFT, LONGEST_S, MATRIX, MOUNTING, OWN, OWN_SIGMA
 from .device import SIZES, Shown, device_of, distance, groups
 from .moving import REST_SIGMA, Moving
 from .windows import LEAST_WINDOWS, Rows, rows_of
@@ -26,7 +27,7 @@ _FREEDOM, _ROUNDS = 4.0, 6
 #: A turn of the axes turns the frame that headings are told in, once: no heading is lost by it.
 _NO_TURN = np.eye(MATRIX) - groups()[-1]
 #: Of its own errors those before a delay and a lever arm, which are small, are taken out.
-TAKEN_OUT = ACCEL_SHAPE.stop
+TAKEN_OUT = MOUNTING.stop
 _OWN_PRECISION = np.concatenate([np.full(n, OWN_SIGMA[name] ** -2) for name, n in OWN.items()])
 
 
@@ -106,23 +107,34 @@ class Fitted:
 
 
 def fit(recordings: list[Moving]) -> tuple[np.ndarray, list[Fitted]]:
-    """(3, 3) the matrix of all, and each recording beside it; recordings without a whole window in
-    motion are left out."""
+    """(3, 3) the matrix of all, and each recording beside it, twice where it has an attitude;
+    recordings without a whole window in motion are left out."""
     matrix = np.zeros((3, 3))
-    fitted: dict[str, Fitted] = {}
+    fitted: dict[int, Fitted] = {}
+    measured = [way for moving in recordings for way in moving.measured]
     for seconds in _SECONDS:
-        for moving in recordings:
-            now = _beside(moving, seconds, matrix, fitted.get(moving.name))
+        for key, moving in enumerate(measured):
+            now = _beside(moving, seconds, matrix, fitted.get(key))
             if now is not None:
-                fitted[moving.name] = now
+                fitted[key] = now
         every = list(fitted.values())
         if not every:
             break
-        step = device_of([f.shown(matrix) for f in every]).entries.reshape(3, 3) - matrix
+        said = by_recording((f, f.shown(matrix)) for f in every)
+        step = device_of(list(said.values())).entries.reshape(3, 3) - matrix
         for f in every:
             f.move(step)
         matrix = matrix + step
     return matrix, list(fitted.values())
+
+
+def by_recording(said: Iterable[tuple[Fitted, Shown]]) -> dict[str, Shown]:
+    """What each recording says, by its name: the sum of what it says in each way."""
+    total: dict[str, Shown] = {}
+    for fitted, shown in said:
+        name = fitted.moving.name
+        total[name] = total.get(name, Shown()) + shown
+    return total
 
 
 def beside(moving: Moving, matrix: np.ndarray) -> Fitted | None:
@@ -146,9 +158,10 @@ def of_what_shows_more(moving: Moving) -> Moving:
 
 
 def _known(f: Fitted) -> float:
-    """Nats by which its windows narrow the entries of a data sheet."""
-    shown = f.shown(np.zeros((3, 3)))
-    return float(np.linalg.slogdet(np.eye(MATRIX) + SIZES[-1] ** 2 * shown.normal)[1])
+    """Nats by which its windows narrow the entries of a data sheet; turns of the axes, which an
+    attitude of a mounted body cannot show, are not counted."""
+    normal = _NO_TURN @ f.shown(np.zeros((3, 3))).normal @ _NO_TURN
+    return float(np.linalg.slogdet(np.eye(MATRIX) + SIZES[-1] ** 2 * normal)[1])
 
 
 def _beside(moving, seconds, matrix, before) -> Fitted | None:
@@ -162,7 +175,8 @@ def _beside(moving, seconds, matrix, before) -> Fitted | None:
     windows = len(rows.errors)
     blocks = min(max(windows // _LEAST_BLOCK, FOLDS), _MOST_BLOCKS)
     folds = np.arange(windows) * blocks // windows % FOLDS
-    heading = rows.heading if moving.given is not None else _NO_TURN @ rows.heading @ _NO_TURN
+    fixed = moving.given is not None and not moving.mounted
+    heading = rows.heading if fixed else _NO_TURN @ rows.heading @ _NO_TURN
     fitted = Fitted(moving, own, rows, np.ones(rows.errors.shape), folds, heading)
     _weigh(fitted, matrix)
     fitted.precision = fitted.precision / _contradiction(fitted, matrix)

@@ -1,14 +1,16 @@
 """A recording as its motion is read: rates, acceleration, rests, an attitude if one is given."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from ...recordings import open_recording
 from ...recordings.recording import ACCEL, GYRO, TIME
 from ...recordings.turning import axes_of, axes_words
-from ...simulate.attitude import IDENTITY, integrate, into_body
+from ...simulate.attitude import IDENTITY, integrate, into_body, multiply, rotation
 from ..read.bad_readings import saturated
 from ..read.gate import CannotClose
 from ..read.reference import Reference
@@ -21,6 +23,8 @@ LEAST_DPS = 5.0
 #: mean direction, below which a device turns about one axis in one pose: a tenth of it, rms.
 _PLANAR = 0.01
 _RAIL = 32767
+#: scipy's order of a quaternion.
+W_LAST = [1, 2, 3, 0]
 #: Of a recording whose rates spread by less no window moves.
 _WORTH_READING_DPS = 1.0
 #: Times the usual between two samples from which on it is a gap, which no window spans.
@@ -40,7 +44,8 @@ class Moving:
     rate: (n, 3) rad/s less `offset` (3,), which is near the bias; accel: (n, 3) g; at_s: (n,) from
     the recording's middle; usable, still: (n,) bool, no rail, at rest; rests: (k, 4) s and rad/s
     less the offset; given: (n, 4) attitude, body to a frame that stands still, NaN where it was not
-    seen and free to change there, None where none is given.
+    seen and free to change there, None where none is given; mounted: whether it is that of a body
+    whose axes are turned against the sensor's, which is no error of the sensor.
     """
 
     name: str
@@ -52,6 +57,7 @@ class Moving:
     offset: np.ndarray
     rests: np.ndarray
     given: np.ndarray | None = None
+    mounted: bool = False
 
     @cached_property
     def dt_s(self) -> float:
@@ -72,6 +78,13 @@ class Moving:
         # an accelerometer that reads nothing has no pose
         poses = poses / np.maximum(np.linalg.norm(poses, axis=1, keepdims=True), 1e-9)
         return _beside_main(poses) < _PLANAR and _beside_main(rate[moves].reshape(-1, 3)) < _PLANAR
+
+    @property
+    def measured(self) -> list["Moving"]:
+        """The recording beside what was given, and beside gravity: axes that are turned against the
+        accelerometer's are what an attitude of a mounted body does not show."""
+        both = self.mounted and self.given is not None and self.accel.any()
+        return [self, replace(self, given=None, mounted=False)] if both else [self]
 
     def part(self, span: slice) -> "Moving":
         """Of its samples."""
@@ -148,7 +161,11 @@ def moving_of(path: AnyPath, ticks: Ticks | None = None) -> Moving | None:
     if reference.rates:
         given = _attitude_by(given, moving.dt_s)
     seen = np.isfinite(given).all(axis=1).mean() if reference.names else 0.0
-    return replace(moving, given=given if seen > _LEAST_SEEN else None)
+    if seen <= _LEAST_SEEN:
+        return moving
+    if reference.rates:
+        return replace(moving, given=given)
+    return replace(moving, given=_in_the_axes_of(moving, given), mounted=True)
 
 
 def _offset(rate: np.ndarray, accel: np.ndarray, t_us: np.ndarray) -> np.ndarray:
@@ -165,6 +182,28 @@ def _offset(rate: np.ndarray, accel: np.ndarray, t_us: np.ndarray) -> np.ndarray
         return float(np.linalg.norm(means, axis=0).sum())
 
     return max(rate.mean(axis=0), np.zeros(3), key=held)
+
+
+def _in_the_axes_of(moving: Moving, given: np.ndarray) -> np.ndarray:
+    """The attitude (n, 4) turned, once, so that its body has the axes of the rates."""
+    ours = integrate(np.degrees(moving.rate), moving.dt_s, IDENTITY)
+    second = max(1, round(1.0 / moving.dt_s))
+    seen = np.isfinite(given).all(axis=1)
+    ends = [(a, a + second) for a in range(0, len(seen) - second, second)]
+    ends = [(a, b) for a, b in ends if seen[a] and seen[b]]
+    if not ends:
+        return given
+    theirs, ours = (turned_between(q, ends).as_rotvec() for q in (given, ours))
+    # what no turn shows is left as it is
+    faint = np.eye(3) * np.sqrt(_PLANAR * (ours**2).sum())
+    turn, _ = Rotation.align_vectors(np.vstack([ours, faint]), np.vstack([theirs, faint]))
+    return multiply(given, rotation(-np.degrees(turn.as_rotvec())))
+
+
+def turned_between(attitude: np.ndarray, ends: Sequence[tuple[int, int]]) -> Rotation:
+    """From the first to the last sample of each pair of an attitude (n, 4), in the body's frame."""
+    first, last = (Rotation.from_quat(attitude[list(at)][:, W_LAST]) for at in zip(*ends))
+    return first.inv() * last
 
 
 def _attitude_by(rate_dps: np.ndarray, dt_s: float) -> np.ndarray:
