@@ -1,6 +1,7 @@
 """The unit of rates by gravity, which they turn: in a hand it is told, at rest it is not."""
 
 import re
+from functools import partial
 
 import numpy as np
 import pandas as pd
@@ -205,6 +206,25 @@ def test_a_unit_in_a_name_that_gravity_contradicts_is_refused_with_the_true_one(
         read(tmp_path, frame)
     _, report = read(tmp_path, frame, mapping="gx=gx_dps:dps gy=gy_dps:dps gz=gz_dps:dps")
     assert "did you mean rad/s?" in " ".join(report.doubts)
+
+
+def test_rates_that_would_turn_gravity_where_it_stays_are_in_a_smaller_unit(tmp_path):
+    t_s, luck = np.arange(1500) / 50, np.random.default_rng(4)
+    rates = luck.normal(0, 0.4, (3, 1500)) + [[0.9], [1.1], [0.5]] + 2 * np.sin(t_s)
+    force = luck.normal(0, 0.4, (3, 1500)) + [[-0.8], [0.5], [-9.9]]
+    drive = partial(frame_of, t_s, rates, force, forces="ax,ay,az")
+    with pytest.raises(BadRecording, match="give --gyro-unit dps"):
+        read(tmp_path, drive("rollrate,pitchrate,yawrate"))
+    names = ",".join(f"gyro_{axis} (rad/s)" for axis in "xyz")
+    with pytest.raises(BadRecording, match="would turn it; did you mean dps"):
+        read(tmp_path, drive(names))
+    (doubt,) = read(tmp_path, drive("gx,gy,gz"), units={"gyro": "rad/s"})[1].doubts
+    assert "did you mean dps" in doubt
+    assert not read(tmp_path, drive("gx,gy,gz"), units={"gyro": "dps"})[1].doubts
+    how = {"units": {"gyro": "lsb"}, "options": Options(gyro_lsb_per_dps=15)}
+    counts = frame_of(t_s, 900 * rates // 1, force, "gx,gy,gz", "ax,ay,az")
+    (doubt,) = read(tmp_path, counts, **how)[1].doubts
+    assert "is --gyro-lsb-per-dps right" in doubt
 
 
 @pytest.mark.parametrize("times", [0.5, 1.6])

@@ -19,6 +19,8 @@ _EXPLAINED = 0.5
 _PUSHED, _SWUNG = 1.4, 4.1
 #: What the mean force lacks where it swings by 15 degrees (RMS): recorded pendulums swing it less.
 _SWINGS = 0.035
+#: Turned by so much over _SPAN_S, the mean force lacks this: by 50 dps, twice any bias, from rest.
+_BEYOND, _TIMES_UNTURNED = 0.26, 4.0
 #: Forces that differ by so little, as a share of their length (RMS), are gravity alone.
 _UNPUSHED = 0.1
 #: Every order of the axes with every sign.
@@ -78,6 +80,18 @@ def turns_otherwise(rates: np.ndarray, force: np.ndarray, t_s: np.ndarray) -> bo
     lengths = np.linalg.norm(spans[1], axis=1)
     unpushed = np.std(lengths) < _UNPUSHED * np.median(lengths)
     return bool(unpushed and _unturned(spans[1]) > _SWINGS)
+
+
+def turn_too_far(rates_dps: np.ndarray, force: np.ndarray, t_s: np.ndarray) -> bool:
+    """Whether the force stays where such rates would turn it, beyond what a bias adds to them.
+
+    rates_dps, force: (3, n), row by row; t_s: (n,). About the vertical any rate is possible.
+    """
+    spans = _spans(rates_dps, force, t_s)
+    if spans is None:
+        return False
+    lacking = _lacking(*spans, np.eye(3)[np.newaxis]).item()
+    return lacking > max(_BEYOND, _TIMES_UNTURNED * _unturned(spans[1]))
 
 
 def axes_of(rates_dps: np.ndarray, force: np.ndarray, t_s: np.ndarray) -> np.ndarray | None:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from ...recordings.recording import ACCEL, GYRO, TEMP, TIME
-from ...recordings.turning import Size, dps_of_one
+from ...recordings.turning import Size, dps_of_one, turn_too_far
 from ..tables.table import Table
 from .chip_steps import unit_by_steps
 from .mapping import Mapped
@@ -100,13 +100,27 @@ def rate_unit_of(size: Size, factor: float = 1.0) -> str | None:
     return next(may_be, None)
 
 
-def ready_words(target: str, wanted: Mapping[str, Mapped], first: Mapping[str, np.ndarray]) -> str:
+def less_than_turns(rates: np.ndarray, force: np.ndarray, t_s: np.ndarray, unit: str) -> str | None:
+    """The largest unit up to one in which rates do not turn further than gravity lets them."""
+    smaller = (u for u in ("rad/s", "dps", "mrad/s", "mdps") if RATE_DPS[u] <= RATE_DPS[unit])
+    return next((u for u in smaller if not turn_too_far(rates * RATE_DPS[u], force, t_s)), None)
+
+
+def ready_words(
+    target: str,
+    wanted: Mapping[str, Mapped],
+    first: Mapping[str, np.ndarray],
+    t_s: np.ndarray | None = None,
+) -> str:
     """What to type for a unit that nothing tells."""
     if target == TIME:
         return _time_words(first[wanted[target].column])
     if target in GYRO and _PER_HOUR.search(wanted[target].column.lower()):
         return "deg/s instead: divide them by 3600 and call them dps"
     unit = _likely(target, wanted, first)
+    if unit in RATE_DPS and t_s is not None and "ax" in wanted:
+        rates, force = (np.array([first[wanted[n].column] for n in axes]) for axes in (GYRO, ACCEL))
+        unit = less_than_turns(rates, force, t_s, unit) or unit
     others = ", ".join(u for u in (*factors_of(target), "lsb") if u != unit and u != "c")
     left_out = ", or leave it out: --map temp=none" if target == TEMP else ""
     return f"{unit_words(wanted, target, unit)} (or {others}){left_out}"

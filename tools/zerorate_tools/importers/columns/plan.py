@@ -101,7 +101,7 @@ def planned(
             do = "write seconds, or dates as 2026-05-01T12:00:00.250; or count the rows: --hz N"
             raise BadRecording(path, f"no time can be read from column {mapped.column!r}", do=do)
         if unit is None:
-            words = ready_words(target, wanted, first)
+            words = ready_words(target, wanted, first, t_s)
             unknown[mapped.column] = asked.setdefault(kind_of(target), words)
         if unit == RAW:
             raw.add(kind_of(target))

@@ -11,7 +11,8 @@ from ...errors import BadRecording
 from ...numbers import duration
 from ...recordings import Scales
 from ...recordings.recording import ACCEL, COLUMNS, GYRO, TEMP, TIME
-from ...recordings.turning import Size, axes_of, axes_words, dps_of_one, turns_otherwise
+from ...recordings.turning import Size, axes_of, axes_words, dps_of_one, turn_too_far
+from ...recordings.turning import turns_otherwise
 from ..columns.guesses import DEGC, GRAVITY, likely_units_of_time, rate_unit_of, unit_words
 from ..columns.plan import Plan
 from .gather import Gathered
@@ -48,7 +49,8 @@ def doubts(found: Gathered, plan: Plan, scales: Scales, path: Path) -> list[str]
     _refuse_coarse_channels(found.looked_at, plan, path)
     times = _gravity_turns_times(found.looked_at, plan, scales)
     if times is None:
-        out = _of_rates(found, plan, path) + _of_axes(found.looked_at, plan, scales)
+        out = _of_rates(found, plan, path) or _of_standing(found.looked_at, plan, scales, path)
+        out += _of_axes(found.looked_at, plan, scales)
     else:
         out = _of_turning(times, found.counted, plan, scales, path)
     out += _of_temperature(found.looked_at, plan)
@@ -162,8 +164,9 @@ def _of_rates(found: Gathered, plan: Plan, path: Path) -> list[str]:
         and _unshaken(found.looked_at, plan)
     ):
         said, meant = f"noise of {noise:.2g} dps is more than such a sensor has at rest", "dps"
-    elif 0 < noise < _QUIETEST * root_hz and factor == 1.0 and found.interval_us < 2e5:
-        said, meant = f"noise of {noise * 1e3:.2g} mdps is less than such a sensor has", "rad/s"
+    elif 0 < noise < _QUIETEST * root_hz and factor <= 1.0 and found.interval_us < 2e5:
+        said = f"noise of {noise * 1e3:.2g} mdps is less than such a sensor has"
+        meant = "rad/s" if factor == 1.0 else "dps"
     else:
         return []
     if not meant:
@@ -229,6 +232,20 @@ def _of_turning(times: Size, counted: bool, plan: Plan, scales: Scales, path: Pa
     if meant is None:
         return [f"{said}: is their unit, or {time}, wrong?"]
     return _of_unit(said, meant, plan, path)
+
+
+def _of_standing(seen, plan: Plan, scales: Scales, path: Path) -> list[str]:
+    """Rates that would turn gravity, which stays where it is."""
+    if plan.by_format or len(seen.get("ax", ())) != len(seen[TIME]):
+        return []
+    if not turn_too_far(*_turns(seen, plan, scales)):
+        return []
+    said = "gravity stays where these rates would turn it"
+    if "gyro" in plan.raw:
+        return [f"{said}: is --gyro-lsb-per-dps right, and are the axes the accelerometer's?"]
+    if plan.factors["gx"][0] > 1:
+        return _of_unit(said, "dps", plan, path)
+    return [f"{said}: is their unit right, and are the axes the accelerometer's?"]
 
 
 def _unshaken(seen: dict[str, np.ndarray], plan: Plan) -> bool:
