@@ -2,6 +2,7 @@
 
 import json
 import re
+import shlex
 from functools import reduce
 from operator import xor
 
@@ -43,7 +44,7 @@ def read(tmp_path, frame, name="in.csv", mapping="", **options):
         frame = frame.to_csv(index=False)
     content = frame if isinstance(frame, bytes) else f"{frame.rstrip()}\n".encode()
     (tmp_path / name).write_bytes(content)
-    words = [parsed_mapping(word) for word in mapping.split()]
+    words = [parsed_mapping(word) for word in shlex.split(mapping)]
     return read_foreign(tmp_path / name, mapping=words, **options)
 
 
@@ -170,6 +171,17 @@ OWN_UNIT = [str({"t_s": i / 100, "gyro": {"unit": "deg/s", "now": dict(zip("xyz"
 SERIAL = ["=~= PuTTY log 2026.05.08 =~=", "08,0.8,0.9", *(f"25,{row}" for row in ROWS)]
 ESP = [f"\x1b[0;32mI ({320 + 10 * i}) imu: gx={r[0]} gy={r[1]} gz={r[2]}\x1b[0m"
        for i, r in enumerate(THREE)]  # fmt: skip
+PARTED = [f"12:00:00.{10 * i:03d} -> gX = {x} | gY = {y} | gZ = {z}"
+          for i, (x, y, z) in enumerate(THREE)]  # fmt: skip
+IN_TURNS = [line for i, (x, y, z) in enumerate(THREE)
+            for line in (f"[2026-05-01 12:00:00,{10 * i:03d}] INFO: Temperature: 25.5 C",
+                         f"Gyro X:{x} Y: {y} Z:{z} deg/s", "knocked"[:i % 2])]  # fmt: skip
+ECHOED = [f"stamp:\n  sec: 5\n  nanosec: {i}0000000\nfoo: {{}}\ngyro (dps):\n"
+          f"  x: {x}\n  y: {y}\n  z: {z}\ncovariance:\n- 0.5\n---"
+          for i, (x, y, z) in enumerate(THREE)]  # fmt: skip
+LONG = ["time,name,value", *(f"{i / 100},g{axis},{v:.4f}" for i, row in enumerate(THREE)
+                             for axis, v in zip("xyz", row))]  # fmt: skip
+SAID = [f"gyro {x} {y} {z}\naccel 0.1 0.2 9.8" for x, y, z in THREE]
 LVM = ["LabVIEW Measurement\t", "***End_of_Header***\t", "X_Dimension\tTime\tTime\tTime",
        "X0\t0\t0\t0", "***End_of_Header***", "\t".join(["X_Value", *RATES, "Comment"]),
        *(row.replace(",", "\t") for row in ROWS)]  # fmt: skip
@@ -201,6 +213,11 @@ COUNTED, BY_NUMBER = Options(hz=100.0), "t_us=1:s gx=2:dps gy=3:dps gz=4:dps"
         ([row.format("[12:00:01.250]") for row in TAGGED], "", COUNTED, 0),
         (["rst:0x1 (POWERON_RESET)", "I (28) boot: ESP-IDF v5.1", *ESP],
          "gx=gx:dps gy=gy:dps gz=gz:dps", None, 0),
+        (["ready!", *PARTED, PARTED[0][:-20]], "gx=gX:dps gy=gY:dps gz=gZ:dps", None, 1),
+        (IN_TURNS, "", None, 0),
+        (ECHOED, "", None, 0),
+        (LONG, "gx=gx:dps gy=gy:dps gz=gz:dps", None, 0),
+        (SAID, "'gx=gyro x:dps' 'gy=gyro y:dps' 'gz=gyro z:dps'", COUNTED, 0),
         (LVM, "t_us=X_Value:s", None, 0),
         (INFLUX, "", None, 0),
         ([HEAD.replace("g", "imu2_g"), *ROWS], "", None, 0),
@@ -208,7 +225,7 @@ COUNTED, BY_NUMBER = Options(hz=100.0), "t_us=1:s gx=2:dps gy=3:dps gz=4:dps"
         ([json.dumps({"protected": {}, "payload": EDGE_IMPULSE})], "", None, 0),
     ],
     ids="comments commented-head no-head serial dicts unit yei lists tuples tag clock esp "
-    "labview influx numbered movesense edge-impulse".split(),
+    "parted turns echoed long said labview influx numbered movesense edge-impulse".split(),
 )  # fmt: skip
 def test_text_of_people_is_read(tmp_path, text, mapping, options, lost):
     recording, report = read(tmp_path, "\n".join(text), "in.log", mapping, options=options)

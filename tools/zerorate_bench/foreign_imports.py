@@ -58,7 +58,7 @@ period are e^20 times as likely as a reading in each row. Not noticed are fewer 
 thinned on lines (each row has noise of its own then), and noise of a digit or two. Each kind below
 is drawn anew, in 2,500 rows, and resampled to 1.1, 1.3, 1.7 or 2.6 times as many.
 """
-_OPTION = re.compile(r"--[a-z-]+ [^\s,;()]+(?: \(or [^)]*\))?")
+_OPTION = re.compile(r"--[a-z-]+ (?:'[^']*'|[^\s,;()]+)(?: \(or [^)]*\))?")
 #: A reading of time by another unit: `us (1000 Hz) or ms (1 Hz)`.
 _UNIT_OF_TIME = re.compile(r"--time-unit ((?:\S+ \([^)]*\)(?: or )?)+)")
 

@@ -113,12 +113,46 @@ Temperature: {:.2f} degC
 log.text("Adafruit's sketch, three lines of words a sample",
     lambda w: ("Adafruit MPU6050 test!\nMPU6050 Found!\n"
         + _sketch(_IN_WORDS, w.mps2, w.rad, w.degc)), words="--hz 100")
+log.text("a sketch's lines behind the monitor's clock, bars between",
+    lambda w: "".join(f"{at} -> {line}\n" for at, line in zip(w.dates("%H:%M:%S.%f", 3),
+        _sketch("gX = {:.4f} | gY = {:.4f} | gZ = {:.4f} | tmp = {:.2f}\n", w.dps, w.degc)
+        .splitlines())), words="--gyro-unit dps --temp-unit degc")
+log.text("mosquitto_sub -v: a topic before each value",
+    lambda w: _sketch("".join(f"imu/gyro/{a} {{:.4f}}\n" for a in "xyz"), w.dps),
+    words="--hz 100 --gyro-unit dps")
+log.text("InfluxDB's line protocol",
+    lambda w: "".join(f"imu,host=pi gx={x:.5f},gy={y:.5f},gz={z:.5f} {ns}\n"
+        for (x, y, z), ns in zip(w.rad.tolist(), w.ns)), words="--gyro-unit rad/s")
+log.csv("a long table: time,name,value",
+    lambda w: table("time,g{xyz},temp_degC", w.t_s, w.dps, w.degc).melt("time", var_name="name")
+        .sort_values("time", kind="stable"), words="--gyro-unit dps")
+_ECHOED = """\
+header:
+  stamp:
+    sec: {:.0f}
+    nanosec: {:.0f}
+  frame_id: imu_link
+angular_velocity:
+  x: {!r}
+  y: {!r}
+  z: {!r}
+angular_velocity_covariance:
+- 0.0
+- 0.0
+linear_acceleration:
+  x: {!r}
+  y: {!r}
+  z: {!r}
+---
+"""
+log.text("ros2 topic echo", lambda w: _sketch(_ECHOED, 5 + w.t_s // 1, np.rint(w.t_s % 1 * 1e9),
+    w.rad, w.mps2))
 log.csv("Ouster, its IMU packets as CSV",
     lambda w: table("sys_ts,accel_ts,gyro_ts,accel{XYZ},angVel{XYZ}",
         *((w.t_s * 1e9).astype(np.int64) + late for late in (9 * 10**11, *[9 * 10**11 + 12] * 2)),
         w.g, w.dps), words="--gyro-unit dps --time-unit ns")
 log.text("sentences: Gyro X:0.01, Y: 0.02, Z: 0.03 radians/s",
-    lambda w: _sketch("Gyro X:{:.2f}, Y: {:.2f}, Z: {:.2f} radians/s\n\n", w.rad))
+    lambda w: _sketch("Gyro X:{:.2f}, Y: {:.2f}, Z: {:.2f} radians/s\n\n", w.rad), words="--hz 100")
 log.csv("numbers alone, no line of names",
     lambda w: table("t,{abcdef}", w.t_s, w.mps2, w.rad), header=False)
 log.csv("names over two lines: the sensor above, its axis beneath",

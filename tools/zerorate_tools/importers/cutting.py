@@ -11,6 +11,7 @@ from ..errors import BadRecording
 from ..recordings import open_recording, recording_writer
 from ..recordings.atomic import written_together
 from ..recordings.text import lines_of
+from .tables.sentences import Rows
 from .tables.sniffing import MARK, Form, sniffed
 
 
@@ -67,11 +68,12 @@ def _of_table(path: Path, starts: list[int], draft: Path) -> list[Path]:
     stem = Path(path.name.removesuffix(".gz"))
     parts = [draft / f"{stem.stem}-{n}{stem.suffix or '.csv'}" for n in range(1, len(starts) + 1)]
     counts, row = [0] * len(parts), 0
+    rows = Rows(form.kinds) if form.kinds else None
     with ExitStack() as files:
         out = [files.enter_context(open(part, "wb")) for part in parts]
         number = -1
         for line in lines:
-            row += bool(line.strip())
+            row = rows.begun(line) if rows else row + bool(line.strip())
             if number + 1 < len(starts) and row == starts[number + 1]:
                 number += 1
                 if not _is_names(line, form):

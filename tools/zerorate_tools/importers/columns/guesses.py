@@ -9,7 +9,7 @@ from ...recordings.recording import ACCEL, GYRO, TEMP, TIME
 from ...recordings.turning import Size, dps_of_one, turn_too_far
 from ..tables.table import Table
 from .chip_steps import unit_by_steps
-from .mapping import Mapped
+from .mapping import Mapped, map_words
 from .names import spelled
 from .units import ACCEL_G, RATE_DPS, RAW, TIME_S, factors_of, kind_of, unit_in_name
 
@@ -131,7 +131,7 @@ def unit_words(wanted: Mapping[str, Mapped], target: str, unit: str) -> str:
     axes = next((axes for axes in (GYRO, ACCEL) if target in axes), (target,))
     fellows = [wanted[axis] for axis in axes if axis in wanted]
     if any(one.unit or unit_in_name(one.target, one.column) for one in fellows):
-        return " ".join(f"--map {one.target}={one.column}:{unit}" for one in fellows)
+        return " ".join(map_words(one.target, one.column, unit) for one in fellows)
     return f"--{kind_of(target)}-unit {unit}"
 
 

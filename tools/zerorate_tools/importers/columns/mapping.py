@@ -1,6 +1,7 @@
 """`--map gx=gyro_x:rad/s` in words and in Python."""
 
 import math
+import shlex
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -45,6 +46,11 @@ class Mapped:
     def columns(self) -> tuple[str, ...]:
         """The columns of the table that it needs."""
         return (self.column, *((self.plus[0],) if self.plus else ()))
+
+
+def map_words(target: str, column: str, unit: str | None = None) -> str:
+    """What to type in a shell for it."""
+    return f"--map {shlex.quote(f'{target}={column}' + (f':{unit}' if unit else ''))}"
 
 
 def parsed_mapping(text: str) -> Mapped:

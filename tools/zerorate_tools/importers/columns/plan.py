@@ -23,7 +23,7 @@ from .guesses import (
     only_grows,
     ready_words,
 )
-from .mapping import Mapped, factor_in, parsed_mapping
+from .mapping import Mapped, factor_in, map_words, parsed_mapping
 from .units import RAW, TIME_S, factors_of, kind_of, unit_in_name, unit_in_quotient, units_of
 
 _LISTED, _TOLD = 24, 8
@@ -265,10 +265,10 @@ def _offered(table: Table, wanted: Mapping[str, Mapped], missing: list[str]) -> 
     """A ready mapping of what may be rates, by names or, where nothing names columns, by values."""
     if usual.unnamed(table.names):
         likely = likely_columns(table) if not set(wanted) - {TIME} else []
-        return " ".join(f"--map {words}" for words in likely)
+        return " ".join(f"--map {shlex.quote(words)}" for words in likely)
     bare = usual.bare_axes(table.names)
     unit = (by_habit("gx", bare["gx"], table.names) or ("dps", ""))[0] if bare else ""
-    return " ".join(f"--map {t}={c}:{unit}" for t, c in bare.items() if t in missing)
+    return " ".join(map_words(t, c, unit) for t, c in bare.items() if t in missing)
 
 
 def divided_by(plan: Plan, kind: str, lsb: float) -> None:
@@ -294,7 +294,7 @@ def hz_words(table: Table) -> str:
             return f"--hz {1 / (step * TIME_S[unit]):.4g} (as column {name!r} says in {unit})"
         steps = np.diff(values)
         if only_grows(values) and steps.min() > 0:
-            words = f"--map {shlex.quote(f't_us={name}:{likely_time(values)}')}"
+            words = map_words(TIME, name, likely_time(values))
             if (steps % 1).any():
                 return words
             # whole numbers may count anything
@@ -311,7 +311,7 @@ def left_aside(plan: Plan, table: Table) -> list[str]:
     for parts in usual.attitudes(aside):
         first = table.first_rows(list(parts.values()))
         if is_unit(np.array([first[parts[name]] for name in ATTITUDE])):
-            words = " ".join(f"--map {shlex.quote(f'{n}={parts[n]}')}" for n in ATTITUDE)
+            words = " ".join(map_words(n, parts[n]) for n in ATTITUDE)
             return [f"an attitude left aside; if it turns the body's axes into z up: {words}"]
     return [f"left aside: {_list(aside, _TOLD)}; take one along as --map NAME=COLUMN"]
 

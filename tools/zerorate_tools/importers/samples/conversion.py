@@ -1,6 +1,5 @@
 """From physical units to integers, piece by piece, every loss counted."""
 
-import shlex
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -14,6 +13,7 @@ from ...recordings.checks import GAP
 from ...recordings.recording import ACCEL, COLUMNS, GYRO, TEMP
 from ...recordings.scales import EXAMPLE
 from ..columns.guesses import gravity_unit
+from ..columns.mapping import map_words
 from ..columns.names import accel_groups, bare_axes, other_temperatures
 from ..columns.plan import Plan, divided_by, named_alike, take_both
 from ..columns.units import kind_of
@@ -223,7 +223,7 @@ def absent(plan: Plan, names: list[str], path: Path) -> list[str]:
     if TEMP not in plan.wanted:
         other = other_temperatures([name for name in names if name not in plan.columns])
         is_near = "it is" if len(other) == 1 else "one of them is"
-        words = f"--map {shlex.quote(f'temp={other[0]}')}" if other else ""
+        words = map_words(TEMP, other[0]) if other else ""
         offer = f"; if {is_near} the sensor's or near it: {words}" if other else ""
         listed = f" by its name, but {', '.join(other)}" if other else ""
         out.append(f"no temperature{listed}: the bias cannot be followed over temperature{offer}")

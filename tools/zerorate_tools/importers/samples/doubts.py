@@ -11,9 +11,16 @@ from ...errors import BadRecording
 from ...numbers import duration
 from ...recordings import Scales
 from ...recordings.recording import ACCEL, COLUMNS, GYRO, TEMP, TIME
-from ...recordings.turning import Size, axes_of, axes_words, dps_of_one, turn_too_far
-from ...recordings.turning import turns_otherwise
+from ...recordings.turning import (
+    Size,
+    axes_of,
+    axes_words,
+    dps_of_one,
+    turn_too_far,
+    turns_otherwise,
+)
 from ..columns.guesses import DEGC, GRAVITY, likely_units_of_time, rate_unit_of, unit_words
+from ..columns.mapping import map_words
 from ..columns.plan import Plan
 from .gather import Gathered
 
@@ -119,7 +126,7 @@ def _refuse_pace(found: Gathered, plan: Plan, path: Path) -> None:
         problem = f"{hz:.3g} samples a second are more than such a sensor has"
         do = "give the true --hz"
         if likely:
-            words = f"--map t_us={plan.wanted[TIME].column}:{likely[0]}"
+            words = map_words(TIME, plan.wanted[TIME].column, likely[0])
             do = f"did you mean {likely[0]} ({likely[1]:.4g} Hz)? Give {words}"
         raise BadRecording(path, problem, do=do)
 
@@ -140,7 +147,7 @@ def _refuse_coarse_channels(seen: dict[str, np.ndarray], plan: Plan, path: Path)
 def _with_digits(name: str, largest: float, plan: Plan) -> str:
     """Words that keep four digits."""
     scale = 10.0 ** (4 - math.floor(math.log10(largest))) * plan.factors[name][0]
-    return f"--map {name}={plan.wanted[name].column}:x{scale:g}"
+    return map_words(name, plan.wanted[name].column, f"x{scale:g}")
 
 
 def _of_rates(found: Gathered, plan: Plan, path: Path) -> list[str]:
@@ -209,8 +216,7 @@ def _of_axes(seen: dict[str, np.ndarray], plan: Plan, scales: Scales) -> list[st
     if axes is None or (axes == np.eye(3)).all():
         return []
     words = [
-        f"--map {target}={'-' if name.startswith('-') else ''}{one.column}"
-        + (f":{one.unit}" if one.unit else "")
+        map_words(target, ("-" if name.startswith("-") else "") + one.column, one.unit)
         for target, name in zip(GYRO, axes_words(axes).split())
         for one in [plan.wanted[f"g{name[-1]}"]]
     ]

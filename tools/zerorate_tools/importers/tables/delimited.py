@@ -15,7 +15,8 @@ import pyarrow.csv
 from ...errors import BadRecording
 from ...recordings.text import line_blocks, rows_of
 from ..report import cut_words
-from .sniffing import COMMENTS, DAY, Form, sniffed, without_arrows, without_labels
+from .sentences import COMMENTS, DAY, Rows
+from .sniffing import Form, sniffed, without_arrows
 from .table import Chunk, Table
 
 _BLOCK_BYTES = 4_194_304
@@ -54,7 +55,8 @@ def _chunks(
     advance: Callable[[float], None],
 ) -> Iterator[Chunk]:
     start, skip, why = 0, form.skip, ""
-    for lines in line_blocks(path, form.encoding, advance, _BLOCK_BYTES):
+    blocks = line_blocks(path, form.encoding, advance, _BLOCK_BYTES)
+    for lines in Rows(form.kinds).of(blocks) if form.kinds else blocks:
         odd = _OddLines(skip)
         rows = _rows(path, _changed(lines, form), form, names, odd)
         place = odd.places(start, rows.num_rows)
@@ -106,9 +108,8 @@ def _refuse_other_names(rows: pa.Table, chunk: Chunk, path: Path, dropped: Count
 
 def _changed(lines: bytes, form: Form) -> bytes:
     """Lines told apart as the form says: one blank parts cells in columns, with none at either end,
-    a clock before an arrow is a cell, and names before values go."""
+    and a clock before an arrow is a cell."""
     lines = without_arrows(lines) if form.arrows else lines
-    lines = without_labels(lines, form.labels) if form.labels else lines
     return _single_blanks(lines) if form.delimiter == " " else lines
 
 

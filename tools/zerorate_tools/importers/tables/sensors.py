@@ -1,7 +1,7 @@
 """Rows of several sensors in one table, told apart by the column that says whose a row is."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -29,7 +29,7 @@ def told_apart(table: Table, instance: int, path: Path) -> tuple[Table, int]:
     if table.mapping:
         return table, instance
     for column, words in table.words.items():
-        if any(map(_OF_RATES.search, words)):
+        if any(map(_OF_RATES.search, words)) or usual.gyro_groups(words):
             return _beside(table, column, words), instance
     column, kinds = _devices(table)
     if not column:
@@ -71,15 +71,19 @@ def _alone(table: Table, column: str, code: float, note: str) -> Table:
 
 
 def _beside(table: Table, column: str, words: list[str]) -> Table:
-    """The same rows, with columns for each sensor: `gyro x` is x where the word is gyro."""
+    """The same rows, with columns for each sensor: `gyro x` is x where the word is gyro.
+
+    Where a word names one value (gx), or rows have no time, those that take turns are one row.
+    """
     shared = _times(table, column)
     values = [name for name in table.names if name not in (*shared, column)]
     bare = usual.unnamed(table.names) and len(values) == len("xyz")
     labels = dict(zip(values, "xyz" if bare else values))
     times = {("time" if bare else name): name for name in shared}
     first = table.first_rows([column, *values])
+    one = len(values) == 1 and bool(usual.gyro_groups(words))
     parts = {
-        f"{word} {labels[v]}": (code, v)
+        word if one else f"{word} {labels[v]}": (code, v)
         for code, word in enumerate(words)
         for v in values
         if np.isfinite(first[v][first[column] == code]).any()
@@ -88,16 +92,58 @@ def _beside(table: Table, column: str, words: list[str]) -> Table:
     def chunks(wanted: list[str]) -> Iterator[Chunk]:
         whose = [parts[name] for name in wanted if name in parts]
         needed = [*(times[n] for n in wanted if n in times), *(v for _, v in whose), column]
-        for chunk in table.chunks([*dict.fromkeys(needed)]):
+        read = table.chunks([*dict.fromkeys(needed)])
+        for chunk in _in_turns(read, column) if one or not shared else read:
             codes = chunk.columns[column]
             out = {name: chunk.columns[times[name]] for name in wanted if name in times}
             for name in wanted:
                 if name in parts:
                     code, value = parts[name]
                     out[name] = np.where(codes == code, chunk.columns[value], np.nan)
-            yield Chunk(chunk.place, out)
+            yield _as_rows(chunk.place, out, times)
 
-    return replace(table, names=[*times, *parts], chunks=chunks)
+    words_left = {} if one else table.words
+    return replace(table, names=[*times, *parts], chunks=chunks, words=words_left)
+
+
+def _in_turns(chunks: Iterable[Chunk], column: str) -> Iterator[Chunk]:
+    """Chunks of whole rows, with the place of its row for each reading."""
+    place, rest = 0, None
+    for chunk in chunks:
+        columns = chunk.columns
+        if rest:
+            columns = {n: np.concatenate([rest[n], values]) for n, values in columns.items()}
+        starts = _starts(columns[column])
+        row = place + np.searchsorted(starts, np.arange(starts[-1]), "right") - 1
+        yield Chunk(row, {name: values[: starts[-1]] for name, values in columns.items()})
+        rest = {name: values[starts[-1] :] for name, values in columns.items()}
+        place += len(starts) - 1
+    if rest:
+        yield Chunk(np.full(len(rest[column]), place), rest)
+
+
+def _as_rows(place: np.ndarray, columns: dict[str, np.ndarray], times: Iterable[str]) -> Chunk:
+    """One row for all readings of one place."""
+    rows, starts, row = np.unique(place, return_index=True, return_inverse=True)
+    if len(rows) == len(place):
+        return Chunk(place, columns)
+    out = {name: columns[name][starts] for name in columns if name in times}
+    for name in columns.keys() - out:
+        there = np.isfinite(columns[name])
+        out[name] = np.full(len(rows), np.nan)
+        out[name][row[there]] = columns[name][there]
+    return Chunk(rows, out)
+
+
+def _starts(codes: np.ndarray) -> list[int]:
+    """Where a row begins: at the first word of all, or at one that the row has."""
+    starts, held = [0], set[float]()
+    for at, code in enumerate(codes.tolist()):
+        if at and (code == 0 or code in held):
+            starts.append(at)
+            held.clear()
+        held.add(code)
+    return starts
 
 
 def _times(table: Table, column: str) -> list[str]:

@@ -6,9 +6,13 @@ from collections import Counter
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+import numpy as np
+
 from ...errors import BadRecording
 from ...recordings.text import head
+from ..columns.guesses import only_grows
 from ..columns.units import without_unit
+from .sentences import COLOUR, COMMENTS, DAY, Kind, Reader, Rows, columns_of, kinds_in
 
 _HEAD_BYTES = 262_144
 #: What some programs write before the first line of UTF-8.
@@ -21,26 +25,17 @@ _CELLS = 3
 _SEEN, MOST_WORDS = 3000, 12
 _ONE_LINE = "print each sample on a line of its own, as 0.8,-0.5,0.3 or gx:0.8 gy:-0.5 gz:0.3"
 _DELIMITERS = (",", ";", "\t", "|", " ")
-COMMENTS = ("#", "//", "%", "*")
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$")
 _DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+([eE][-+]?\d+)?$")
-#: A day before a time of the day, whatever its order.
-DAY = r"\d\d?[./-]\d\d?[./-]\d{4},?\s+"
 DATE = re.compile(
     rf"\d{{4}}[-/]\d\d[-/]\d\d[T ]\d\d:\d\d|(?:{DAY})?\d\d?:\d\d:\d\d([.,:]\d+)?(\s*[ap]\.?m\.?)?$",
     re.I,
 )
-#: What the Arduino IDE puts before each line of its monitor.
-_CLOCK = re.compile(rb"(?m)^(\d\d:\d\d:\d\d\.\d+) -> (?=[^\r\n]*?([,;\t |]))")
-#: What ESP-IDF's log puts before names and values: I (320) imu: gx=0.8, in milliseconds.
-_ESP_LOG = re.compile(
-    rb"(?m)^(?:\x1b\[[\d;]*m)?[EWIDV] \((\d+)\) [^:\r\n]+:[ \t]+(?=[A-Za-z_]\w*[ \t]*[:=])"
+#: What monitors put before each line: 12:00:00.250 -> or [2026-05-01 12:00:00.250].
+_CLOCK = re.compile(
+    rb"(?m)^(?:([\d:.]+) -> |\[((?:[\d/.-]+[ T])?\d\d?:\d\d:\d\d(?:[.,]\d+)?)\][ \t]*)"
+    rb"(?=[^\r\n]*?([,;\t |]))"
 )
-_COLOUR = re.compile(rb"\x1b\[[\d;]*m")
-#: A value behind its name, as Arduino's plotter has it: gx:0.8,gy:-0.5; or behind [a tag].
-_PAIR = rb"([A-Za-z_]\w*)[ \t]*[:=][ \t]*([-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?)"
-_PAIRS = re.compile(rb"\s*(?:\[[^\]\r\n]*\]\s*)?(?:" + _PAIR + rb"(?:[,;\s]+|$)){%d,}$" % _CELLS)
-_EACH_PAIR = re.compile(_PAIR)
 #: A line of such beneath the names says their units.
 _UNIT = re.compile(
     r"[\[(]?(-|[mun]?s|sec|(m?deg|rad|°)/s|m?dps|m?g|m/s(\^?2|²)|m/\(s\^2\)|°?c|degc|k|lsb)[\])]?$",
@@ -63,7 +58,7 @@ _OF_COUNTS = {"t": "s", "g": "rad/s", "a": "g"}
 class Form:
     """How a text holds its table. names: of the columns, as numbers from 1 where nothing names
     them; skip: lines before the first row; words: by column, where its cells are few words;
-    arrows: a clock stands before lines; labels: what stands before each value;
+    arrows: a clock stands before lines; kinds: of lines of words and numbers;
     scales: by column, what its numbers are multiplied by."""
 
     names: list[str]
@@ -76,7 +71,7 @@ class Form:
     note: str = ""
     said_hz: float | None = None
     arrows: bool = False
-    labels: tuple[bytes, ...] = ()
+    kinds: tuple[Kind, ...] = ()
     scales: dict[str, float] = field(default_factory=dict)
 
 
@@ -106,9 +101,9 @@ def sniffed(path: Path) -> Form:
     ends = [n for n, line in enumerate(lines) if line.startswith("***End_of_Header***")]
     if ends:  # LabVIEW names a column of comments that rows do not have
         lines = [""] * ends[-1] + [line.removesuffix("\tComment") for line in lines[ends[-1] :]]
-    labelled = _labelled(lines, encoding)
-    if labelled is not None:
-        return replace(labelled, arrows=plain != content)
+    spoken = [line.encode() for line in content.decode(encoding, "replace").splitlines()]
+    if kinds := kinds_in(spoken[: len(lines)]):
+        return _of_sentences(kinds, spoken, encoding)
     form = _table_in(lines[:_LINES], lines, encoding, path)
     if lines[0].startswith("GYROFLOW IMU LOG"):
         form = _scaled(form, lines[: form.skip])
@@ -127,36 +122,33 @@ def _scaled(form: Form, above: list[str]) -> Form:
 
 
 def without_arrows(content: bytes) -> bytes:
-    """A clock before a line, that of Arduino's monitor or of ESP-IDF, as a cell of its own."""
-    content = _CLOCK.sub(lambda found: found[1] + found[2], content)
-    return _COLOUR.sub(b"", _ESP_LOG.sub(rb"esp_log_ms=\1 ", content))
+    """A clock before a line as a cell of its own."""
+    content = COLOUR.sub(b"", content)
+    return _CLOCK.sub(lambda at: (at[1] or at[2].replace(b" ", b"T")) + at[3], content)
 
 
-def _labelled(lines: list[str], encoding: str) -> Form | None:
-    """The form of lines most of which have the same name before each value; else None."""
-    labels = [_labels(line.encode()) for line in lines]
-    [(usual, count)] = Counter(labels).most_common(1)
-    if not usual or 2 * count <= sum(1 for line in lines if line.strip()):
-        return None
-    skip = labels.index(usual)
-    names = _single([label.decode() for label in usual])
-    return Form(names, skip, ",", encoding, said_hz=_rate_said(lines[:skip]), labels=usual)
+def _of_sentences(kinds: tuple[Kind, ...], lines: list[bytes], encoding: str) -> Form:
+    """The form of lines of words; a number without one that goes on, and counts no rows, is the
+    time."""
+    names = columns_of(kinds)
+    seen = b"\n".join(lines[:_SEEN])
+    rows = b"".join(Rows(kinds).of([seen + b"\n"])).decode().splitlines()
+    cells = [*csv.reader(row for row in rows if row != "-")]
+    ends = {kind[at] for kind in kinds for at in (0, -1)}
+    own = [at for at, name in enumerate(names) if name.isdigit() and name in ends]
+    at = next((at for at in own if _goes_on([row[at] for row in cells if row[at]])), None)
+    if at is not None:
+        names[at] = "time"
+    dates = frozenset(n for n, cell in zip(names, cells[0]) if DATE.match(cell))
+    above = [line.decode() for line in lines[:_LINES] if Reader().read(line)[0] not in kinds]
+    return Form(names, 0, ",", encoding, dates=dates, said_hz=_rate_said(above), kinds=kinds)
 
 
-def _labels(line: bytes) -> tuple[bytes, ...]:
-    pairs = _EACH_PAIR.findall(line) if _PAIRS.match(line) else []
-    return tuple(label for label, _ in pairs)
-
-
-def without_labels(lines: bytes, labels: tuple[bytes, ...]) -> bytes:
-    """The values of each line with these names before them, parted by commas; others stay."""
-
-    def values(line: bytes) -> bytes:
-        pairs = _EACH_PAIR.findall(line) if _PAIRS.match(line) else []
-        same = tuple(label for label, _ in pairs) == labels
-        return b",".join(value for _, value in pairs) if same else line
-
-    return b"\n".join(map(values, lines.split(b"\n")))
+def _goes_on(cells: list[str]) -> bool:
+    if any(map(DATE.match, cells[:1])):
+        return True
+    values = np.array(cells, float)
+    return only_grows(values) and bool((np.diff(values) != 1).any())
 
 
 def _table_in(lines: list[str], every: list[str], encoding: str, path: Path) -> Form:
