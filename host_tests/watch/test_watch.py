@@ -6,6 +6,7 @@ import subprocess
 import sys
 import threading
 import tty
+from contextlib import suppress
 from io import StringIO
 
 import numpy as np
@@ -168,8 +169,22 @@ def test_a_finished_recording_is_shown_once(tmp_path, recording, name):
     assert state_bytes(live.corrector) == replay(tmp_path / name).state
 
 
-def test_an_emulated_chip_is_watched_and_has_no_pins_to_set_up(tmp_path, capsys):
-    assert main(["watch", "fake:", "--for", "0.2"]) == 0
+def test_on_a_terminal_of_any_letters_an_emulated_chip_is_drawn_anew():
+    terminal, shown = os.openpty()
+    command = [sys.executable, "-m", "zerorate_tools.cli", "watch", "fake:", "--for", "0.2"]
+    letters = {**os.environ, "PYTHONIOENCODING": "ascii", "COLUMNS": "100", "TERM": "xterm"}
+    watching = subprocess.Popen(command, stdout=shown, env=letters)
+    os.close(shown)
+    said = b""
+    with suppress(OSError):  # the terminal's end
+        while part := os.read(terminal, 4096):
+            said += part
+    os.close(terminal)
+    assert watching.wait() == 0
+    assert b"\x1b[1A" in said and b"\\x1b" not in said and b"? one sigma" in said
+
+
+def test_an_emulated_chip_has_no_pins_to_set_up(tmp_path, capsys):
     (tmp_path / "pins.py").write_text("imu = None")
     for words in ("watch fake: --for 1", f"record fake: --out {tmp_path / 'x.csv'}"):
         assert main([*words.split(), "--setup", str(tmp_path / "pins.py")]) == 2

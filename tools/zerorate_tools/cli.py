@@ -3,6 +3,7 @@
 # PYTHON_ARGCOMPLETE_OK
 import argparse
 import difflib
+import io
 import os
 import re
 import signal
@@ -38,6 +39,8 @@ def main(argv: Sequence[str] | None = None) -> int:
             number = getattr(signal, name)
             if signal.getsignal(number) != signal.SIG_IGN:  # by nohup
                 signal.signal(number, _end)
+        if isinstance(sys.stdout, io.TextIOWrapper):  # of Latin-1, which has no bars
+            sys.stdout.reconfigure(errors="replace")
         sys.stdout = _Printable(sys.stdout)
     try:
         found = parser()

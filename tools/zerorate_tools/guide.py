@@ -20,6 +20,7 @@ from .loop.motion.device import SIZES, Shown
 from .loop.motion.matrix import Fitted, beside
 from .loop.motion.moving import LEAST_DPS, moving_of
 from .loop.motion.windows import LEAST_WINDOWS
+from .progress import redrawn
 from .recordings import Recording, Scales, write_recording
 from .recordings.recording import GYRO, TIME, Columns
 
@@ -122,9 +123,7 @@ def screen() -> Iterator["Lines | Bars"]:
     if not sys.stdout.isatty():
         yield Lines()
         return
-    from rich.live import Live
-
-    with Live(auto_refresh=False) as area:
+    with redrawn() as area:
         yield Bars(area)
 
 

@@ -4,6 +4,21 @@ import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import Any
+
+
+@contextmanager
+def redrawn() -> Iterator[Any]:
+    """Yield a part of the terminal that is drawn anew, a rich Live.
+
+    Its escapes go to standard output itself, which the command line lets nothing else write to, so
+    what is not our own text in it must be printable().
+    """
+    from rich.console import Console
+    from rich.live import Live
+
+    with Live(console=Console(file=sys.__stdout__), auto_refresh=False) as area:
+        yield area
 
 
 @contextmanager

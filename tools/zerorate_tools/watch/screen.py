@@ -10,8 +10,9 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from ..errors import MissingLibrary, ZerorateError
+from ..errors import MissingLibrary, ZerorateError, printable
 from ..numbers import fixed
+from ..progress import redrawn
 
 _BARS = "▁▂▃▄▅▆▇█"
 _WIDTH = 24
@@ -31,9 +32,7 @@ def screen(plain: bool = False) -> Iterator[Screen]:
     if plain or not sys.stdout.isatty() or get_terminal_size().columns < _LEAST_COLUMNS:
         yield Lines()
         return
-    from rich.live import Live as RichLive
-
-    with RichLive(auto_refresh=False) as area:
+    with redrawn() as area:
         yield Area(area)
 
 
@@ -69,9 +68,9 @@ class Area:
         from rich.text import Text
 
         # Text, not str: a file's name may hold what rich takes for markup
-        parts = [Text(live.headline(), style="bold"), _table(live)]
-        parts += [Text(line) for line in [*live.conditions(), *_learning(live)]]
-        parts += [Text(note, style="yellow") for note in notes]
+        parts = [Text(printable(live.headline()), style="bold"), _table(live)]
+        parts += [Text(printable(line)) for line in [*live.conditions(), *_learning(live)]]
+        parts += [Text(printable(note), style="yellow") for note in notes]
         parts.append(Text("Ctrl-C ends.", style="dim"))
         self._area.update(Group(*parts), refresh=True)
 
@@ -89,6 +88,7 @@ def sparkline(values: np.ndarray) -> str:
 def _table(live: Shown) -> Any:
     from rich import box
     from rich.table import Table
+    from rich.text import Text
 
     table = Table(box=box.SIMPLE_HEAD)
     for name in ("", "rate dps", "corrected", "bias dps", "± one sigma"):
@@ -100,7 +100,8 @@ def _table(live: Shown) -> Any:
         signed = [fixed(v[i], 3, "+") for v in (live.rate_dps, live.left_dps, live.bias_dps)]
         unknown = source == "none" or np.isnan(live.quality_dps[i])
         sigma = "" if unknown else f"{live.quality_dps[i]:.3f}"
-        table.add_row(f"g{'xyz'[i]}", *signed, sigma, source, sparkline(past[:, i]))
+        named = Text(printable(source))
+        table.add_row(f"g{'xyz'[i]}", *signed, sigma, named, sparkline(past[:, i]))
     return table
 
 
