@@ -97,7 +97,7 @@ def test_the_real_process_comes_back_after_kill_9(tmp_path):
     command = [sys.executable, "-c", LIVE, str(tmp_path / "learned.bin")]
     pipe = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
     said = []
-    for ending in (signal.SIGKILL, signal.SIGKILL, signal.SIGTERM):
+    for ending in (signal.SIGKILL, signal.SIGHUP, signal.SIGTERM):
         process = subprocess.Popen(command, **pipe)
         lines, end = [], time.monotonic() + 60
         while len(lines) < 400 and time.monotonic() < end:
@@ -105,8 +105,9 @@ def test_the_real_process_comes_back_after_kill_9(tmp_path):
         os.kill(process.pid, ending)
         said.append(process.communicate()[1])
     assert lines[0]["bias_dps"] == pytest.approx(BIAS_DPS, abs=0.05)
-    assert "nothing was ever stored" in said[0] and "loaded" in said[1]
-    assert "loaded" in said[2] and "within the hour, is not kept" in said[2]
+    assert "nothing was ever stored" in said[0]
+    for words in said[1:]:
+        assert "loaded" in words and "within the hour, is not kept" in words
 
 
 def test_the_unit_has_a_watchdog_and_no_rights(repository):
@@ -118,4 +119,4 @@ def test_the_unit_has_a_watchdog_and_no_rights(repository):
     service = unit["Service"]
     assert service["Type"] == "notify" and int(service["WatchdogSec"]) >= 15
     assert service["DynamicUser"] == "yes" and service["DevicePolicy"] == "closed"
-    assert service["Restart"] == "always"
+    assert service["Restart"] == "always" and service["UMask"] == "0000"

@@ -1,6 +1,7 @@
 """What commands do beside the function behind them: what they print, fetch, serve and refuse."""
 
 import errno
+import fcntl
 import io
 import os
 import sys
@@ -268,9 +269,14 @@ def test_an_open_bus_is_closed_where_no_chip_answers_and_a_wrong_setting_is_one_
             opened()
 
 
-def test_run_needs_the_folder_of_its_state(serving, capsys):
+def test_run_needs_the_folder_of_its_state_and_the_file_alone(serving, capsys):
     assert cli.main(["run", "fake:", "--state", "no/learned.bin"]) == 2
     assert not serving.service.called and capsys.readouterr().err.startswith("zerorate: no: ")
+    with open("learned.bin", "ab") as of_another:
+        fcntl.flock(of_another, fcntl.LOCK_EX)
+        assert cli.main(["run", "fake:"]) == 2
+    assert not serving.service.called and "another service" in capsys.readouterr().err
+    assert cli.main(["run", "fake:"]) == 0
 
 
 @pytest.mark.parametrize("words", ["--hz 3000", "--dlpf-hz 2", "--part nosuch"])
