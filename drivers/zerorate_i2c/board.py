@@ -1,25 +1,38 @@
 """An MPU-6050 on the pins of a MicroPython board: the one place that says how it is wired."""
 
-import sys
-
-from machine import I2C, Pin
+from machine import I2C, Pin, SoftI2C
 
 from .mpu6050 import MPU6050
 from .registers import unload
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
 
-def setup(scl, sda, bus=None, freq=400000, **options):
+
+def setup(
+    scl: "Any", sda: "Any", bus: "int | None" = None, freq: int = 400000, **options: "Any"
+) -> MPU6050:
     """An MPU6050 on the pins scl and sda, by number or name; options are MPU6050's.
 
-    bus: number of the I2C peripheral (default: the one that has these pins on a Pico, else 0).
+    bus: number of the I2C peripheral (default: 0 or 1, whichever takes these pins, or software).
     SDA is freed first where a chip holds it low. Raises OSError and ValueError as MPU6050 does.
     """
     from .bus_recovery import free_bus  # once: its 1 KB of heap is free again behind it
 
-    wires = [Pin(pin, Pin.OPEN_DRAIN, value=1) for pin in (scl, sda)]
-    free_bus(wires[0], wires[1])
+    scl, sda = [Pin(pin, Pin.OPEN_DRAIN, value=1) for pin in (scl, sda)]
+    free_bus(scl, sda)
+    del free_bus
     unload("bus_recovery")
-    if bus is None:
-        bus = sda // 2 % 2 if sys.platform == "rp2" else 0
+    for number in (0, 1, None) if bus is None else (bus,):
+        try:
+            if number is None:
+                i2c = SoftI2C(scl=scl, sda=sda, freq=freq)
+            else:
+                i2c = I2C(number, scl=scl, sda=sda, freq=freq)
+            break
+        except (TypeError, ValueError):  # the pins are another one's, or may not be named
+            if number == bus:
+                raise
     unload("board")
-    return MPU6050(I2C(bus, scl=wires[0], sda=wires[1], freq=freq), **options)
+    return MPU6050(i2c, **options)

@@ -1,5 +1,9 @@
 """The driver brings a chip up, reads whole samples and says what it is talking to."""
 
+import sys
+from types import SimpleNamespace
+from unittest.mock import Mock
+
 import pytest
 from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050
 from zerorate_fakes.registers import PARTS as FAKE_PARTS
@@ -88,6 +92,35 @@ def test_a_chip_of_another_address_and_no_genuine_id_comes_up_when_the_part_is_n
         bus.fault(kind, times=None)
         with pytest.raises(OSError, match="a dead bus"):
             MPU6050(bus, 0x69, part="MPU-6500", clock=FakeClock())
+
+
+@pytest.mark.parametrize(
+    ("error", "taken", "bus", "opened"),
+    [
+        (ValueError("bad SCL pin"), 0, None, [0]),  # of a Pico
+        (ValueError("bad SCL pin"), 1, None, [0, 1]),
+        (ValueError("bad SCL pin"), 1, 1, [1]),
+        (ValueError("explicit choice of scl/sda is not implemented"), None, None, [0, 1, "soft"]),
+        (TypeError("extra keyword arguments given"), None, None, [0, 1, "soft"]),
+    ],
+)
+def test_any_pins_of_any_port_come_up_by_number_or_name(monkeypatch, error, taken, bus, opened):
+    clock, wire, numbers = FakeClock(), Mock(), []
+
+    def i2c(number, **wires):
+        assert wires == {"scl": wire, "sda": wire, "freq": 400000}
+        numbers.append(number)
+        if number not in (taken, "soft"):
+            raise error
+        return FakeI2C(FakeMPU6050())
+
+    ports = {"Pin": Mock(return_value=wire), "I2C": i2c, "SoftI2C": lambda **w: i2c("soft", **w)}
+    monkeypatch.setitem(sys.modules, "machine", SimpleNamespace(**ports))
+    monkeypatch.delitem(sys.modules, "zerorate_i2c.board", raising=False)
+    from zerorate_i2c.board import setup
+
+    assert setup(scl="GP5", sda="GP4", bus=bus, clock=clock).part == "MPU-6050"
+    assert numbers == opened
 
 
 def test_a_read_fills_seven_signed_words(make_bench):
