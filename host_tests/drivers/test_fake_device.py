@@ -4,6 +4,7 @@ import struct
 from array import array
 from statistics import mean, pstdev
 
+import numpy as np
 import pytest
 from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050, Physical, UnknownRegister
 from zerorate_fakes.pins import InterruptPin
@@ -122,8 +123,9 @@ def test_an_interrupt_pin_does_what_its_configuration_says(config, trigger, seen
         [[1, 2, 3, 4, 5, 6, -7]],
         bytes([0, 1, 0, 2, 0, 3, 0, 4, 0, 5, 0, 6, 0xFF, 0xF9]),
         array("h", [1, 2, 3, 4, 5, 6, -7]),
+        np.array([[1, 2, 3, 4, 5, 6, -7]], np.int16),
     ],
-    ids=["iterable", "frames", "array"],
+    ids=["iterable", "frames", "array", "numpy"],
 )
 def test_a_recording_may_be_an_iterable_frames_or_an_array(source):
     chip = awake(source)

@@ -115,15 +115,16 @@ def _checked(rows: "Iterable[Sequence[int]]") -> "Iterator[Sequence[int]]":
     number = 0
     for row in rows:
         try:
-            right = len(row) == 7 and -32768 <= min(row) and max(row) <= 32767
-            right = right and (number or all([int(word) == word for word in row]))
+            words = [int(word) for word in row]  # of numpy, too, whose own would overflow
+            right = len(words) == 7 and -32768 <= min(words) and max(words) <= 32767
+            right = right and words == list(row)
         except (TypeError, ValueError):
             right = False
         if not right:
             text = "sample {} of the source is {}, not {}; for dps and g use Physical"
             raise ValueError(text.format(number, row, _WORDS))
         number += 1
-        yield row
+        yield words
 
 
 def _zeros() -> "Iterator[Sequence[int]]":
