@@ -1,5 +1,6 @@
 """What cannot be imported is refused, each with the words that mend it."""
 
+import json
 import os
 import re
 import zipfile
@@ -81,6 +82,12 @@ LISTS = pd.DataFrame({"t_s": np.arange(300) / 100, "pulse": 70, "gyro": "[0.8, -
         (table(500), {"instance": 1}, "there is one gyroscope; leave --instance away"),
         (table(500).assign(**{f"b_gyro_{a}_dps": 1.0 for a in "xyz"}), {"instance": 2},
          "there are 2 gyroscopes; give --instance 0 to 1"),
+        (COUNTS[["ax", "ay", "az"]], {}, "no column for gx, gy, gz; map it: --map gx=COLUMN:UNIT"),
+        (COUNTS[["ax", "ay", "az"]].set_axis([*"xyz"], axis=1), {}, "no rates .they are as long"),
+        (lines(COUNTS[["ax", "ay", "az"]].to_numpy()), {}, r"3, ...\); map it: --map gx=COLUMN:UN"),
+        ("#IMU,1,2,3\n" * 9, {}, "row 1: each line begins with '#', as comments do: .*; take it"),
+        (json.dumps({"fs": 50, "data": [{"gx_dps": 1, "gy_dps": 2, "gz_dps": 3}] * 10}), {},
+         "give --hz 50 .as the file says"),
         (rates("t_s p q r".split()), {}, "if these are rates: --map gx=p:dps --map gy=q:dps"),
         # a quaternion is none, and a phone's Sensor Logger writes radians
         (rates("t_s x y z w".split()), {}, "--map gx=COLUMN:UNIT.* COLUMN one of t_s, x"),

@@ -187,6 +187,11 @@ LVM = ["LabVIEW Measurement\t", "***End_of_Header***\t", "X_Dimension\tTime\tTim
        *(row.replace(",", "\t") for row in ROWS)]  # fmt: skip
 INFLUX = ["#datatype,string,long,double,double,double", "#default,_result,,,,", f",result,{HEAD}",
           *(f",,{row}" for row in ROWS)]  # fmt: skip
+SHIMMER = [
+    "S_Timestamp_CAL\tS_Gyro_X_RAW\tS_Gyro_Y_RAW\tS_Gyro_Z_RAW",
+    "ms" + 3 * "\tno units",
+    *(f"{10 * i}\t{x:.0f}\t{y:.0f}\t{z:.0f}" for i, (x, y, z) in enumerate(1e4 * THREE)),
+]
 XYZ, DOWN = [dict(zip("xyz", row.tolist())) for row in THREE], {"x": 0.0, "y": 0.0, "z": 9.8}
 MESSAGES = [{"Timestamp": 50 * n, "ArrayAcc": 5 * [DOWN], "ArrayGyro": XYZ[5 * n :][:5]}
             for n in range(10)]  # fmt: skip
@@ -220,12 +225,16 @@ COUNTED, BY_NUMBER = Options(hz=100.0), "t_us=1:s gx=2:dps gy=3:dps gz=4:dps"
         (SAID, "'gx=gyro x:dps' 'gy=gyro y:dps' 'gz=gyro z:dps'", COUNTED, 0),
         (LVM, "t_us=X_Value:s", None, 0),
         (INFLUX, "", None, 0),
+        (SHIMMER, "", Options(gyro_lsb_per_dps=1e4), 0),
+        ([json.dumps({"columns": RATES, "index": [1], "data": THREE.tolist()})], "", COUNTED, 0),
+        ([json.dumps(THREE.tolist())], "gx=[0]:dps gy=[1]:dps gz=[2]:dps", COUNTED, 0),
         ([HEAD.replace("g", "imu2_g"), *ROWS], "", None, 0),
         ([json.dumps({"Meas": {"IMU6": MESSAGES}})], "", None, 0),
         ([json.dumps({"protected": {}, "payload": EDGE_IMPULSE})], "", None, 0),
     ],
     ids="comments commented-head no-head serial dicts unit yei lists tuples tag clock esp "
-    "parted turns echoed long said labview influx numbered movesense edge-impulse".split(),
+    "parted turns echoed long said labview influx shimmer split rows numbered movesense "
+    "edge-impulse".split(),
 )  # fmt: skip
 def test_text_of_people_is_read(tmp_path, text, mapping, options, lost):
     recording, report = read(tmp_path, "\n".join(text), "in.log", mapping, options=options)

@@ -182,7 +182,8 @@ def _by_values(
     if unit is None:
         every = np.array(list(values.values()))
         counted = (every % 1 == 0).all() or np.abs(np.median(every, axis=1)).max() > FASTEST_DPS
-        return [], RAW if counted else "", names if len(names) == len(GYRO) else []
+        three = len(names) == len(GYRO) and not as_long_as_gravity([*every])
+        return [], RAW if counted else "", names if three else []
     at = units.index(unit)
     accel = [f"{axis}={name}:{unit}" for axis, name in zip(ACCEL, names[at : at + 3])]
     others = [n for n in (*range(at + 3, len(threes)), *range(at - 2)) if _beside(threes[n], order)]
@@ -276,6 +277,13 @@ def _by_gravity(
     columns = [first[wanted[axis].column] for axis in ACCEL]
     unit = gravity_unit(columns)
     return unit, f"its usual length is {_usual_length(columns):.4g}" if unit else ""
+
+
+def as_long_as_gravity(columns: list[np.ndarray]) -> bool:
+    """Whether that is so in a unit, or in counts of +-2, 4 or 8 g, which no bias is as large as."""
+    counted = _usual_length(columns) / np.array([16384.0, 8192.0, 4096.0])
+    near = bool((np.abs(counted - 1.0) < _GRAVITY_WITHIN).any())
+    return near or gravity_unit(columns) is not None
 
 
 def gravity_unit(columns: list[np.ndarray]) -> str | None:

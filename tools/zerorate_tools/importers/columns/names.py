@@ -6,8 +6,8 @@ import re
 from .units import RAW, unit_in_name, without_unit
 
 _AXIS = "([xyz])"
-#: After the axis: calibrated, or a mean of many readings.
-_MADE = "(?:cal|mean|avg)?"
+#: After the axis: calibrated or not, or a mean of many readings.
+_MADE = "(?:cal|raw|mean|avg)?"
 #: A sensor's number, or its part: gx1, accelerometer_lsm6ds3.x.
 _NUMBER = r"\d?"
 _CHIP = r"(?:(?:bm[agi]|i[ai]m|icm|lis|lsm|mpu)\d[a-z0-9]*?)?"

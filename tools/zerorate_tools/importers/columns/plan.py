@@ -14,6 +14,7 @@ from ...recordings.recording import ACCEL, ATTITUDE, COLUMNS, GYRO, TEMP, TIME
 from ..tables.table import Chunk, Table
 from . import names as usual
 from .guesses import (
+    as_long_as_gravity,
     by_habit,
     gravity_unit,
     guessed_unit,
@@ -236,7 +237,7 @@ def _of_another_sensor(table: Table, path: Path) -> str:
     if others and all(map(usual.of_other_unit, others)):
         return "the units of all columns"
     named_xyz = [name for name in three if name.lower() not in usual.BODY_RATES.values()]
-    if named_xyz and gravity_unit(list(table.first_rows(three).values())):
+    if named_xyz and as_long_as_gravity(list(table.first_rows(three).values())):
         return "they are as long as gravity"
     return ""
 

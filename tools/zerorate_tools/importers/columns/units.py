@@ -37,7 +37,7 @@ _WRITTEN = {
     "ms": "m(?:seconds?|secs?|s)|millis(?:econds?|ecs?)?",
     "us": "[uµμ](?:seconds?|secs?|s)|micros(?:econds?|ecs?)?",
     "ns": "n(?:seconds?|secs?|s)|nanos(?:econds?|ecs?)?",
-    "lsb": "lsb|counts|raw",
+    "lsb": "lsb|counts|raw|no units",
 }
 _WRITTEN_BY_KIND = {
     "time": ("s", "ms", "us", "ns"),

@@ -21,7 +21,7 @@ from . import arrays, columnar, flight_logs, json_file, mcap_file, ros_bag
 
 _WORDS_BYTES = 65_536
 _ABOUT, _READ = b"about", b"read"
-_TOLD = ("names", "mapping", "sensor", "lsb", "notes", "words")
+_TOLD = ("names", "mapping", "sensor", "lsb", "notes", "words", "said_hz")
 #: Reader -> its function, and what it reads.
 _READERS = {
     "ulog": (flight_logs.ulog, "ULog"),

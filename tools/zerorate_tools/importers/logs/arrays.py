@@ -4,6 +4,7 @@ An array `name` of n samples by k, in this order or the other, becomes columns n
 name[k-1], a field of a structure `name.field`. The longer side has the samples.
 """
 
+import re
 from collections import Counter
 from contextlib import suppress
 from functools import partial
@@ -17,6 +18,7 @@ from ..tables.table import Table, one_after_the_other
 
 #: Bytes that MATLAB writes before its HDF5, whose arrays have their axes in turned order.
 _MATLAB_BYTES = 512
+_RATE = re.compile(r"(?:.*[._ ])?(?:fs|sr|odr|hz|(?:sampl\w*[_ ]?)?(?:rate|freq\w*))", re.I)
 
 
 def matlab(path: Path, instance: int = 0) -> Table:
@@ -62,7 +64,7 @@ def numpy_file(path: Path, instance: int = 0) -> Table:
     return table_of_arrays(found, path, do)
 
 
-def table_of_arrays(found: dict[str, object], path: Path, do: str) -> Table:
+def table_of_arrays(found: dict[str, Any], path: Path, do: str) -> Table:
     """The arrays that share the most rows. do: what to do where there is none of numbers.
 
     Raises BadRecording.
@@ -84,7 +86,15 @@ def table_of_arrays(found: dict[str, object], path: Path, do: str) -> Table:
                 columns[name if value.shape[1] == 1 else f"{name}[{k}]"] = value[:, k]
     if not columns:
         raise BadRecording(path, "no array of numbers", do=do)
-    return Table(list(columns), partial(one_after_the_other, [columns]))
+    chunks = partial(one_after_the_other, [columns])
+    return Table(list(columns), chunks, said_hz=rate_said(found))
+
+
+def rate_said(found: dict[str, Any]) -> float | None:
+    """Samples a second, where one number is called as such: fs, frequency, sample_rate."""
+    said = [v for n, v in found.items() if _RATE.fullmatch(n) and np.size(v) == 1]
+    numbers = [float(np.ravel(v)[0]) for v in said if np.asarray(v).dtype.kind in "fiu"]
+    return next((hz for hz in numbers if hz > 0), None)
 
 
 def _flat(found: dict[str, object]) -> dict[str, object]:

@@ -9,6 +9,7 @@ import re
 from ast import literal_eval
 from collections import Counter
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from itertools import chain, islice
 from pathlib import Path
 from typing import Any
@@ -21,7 +22,7 @@ from ...recordings.text import head, lines_of, open_text
 from ..tables.delimited import seconds_of
 from ..tables.sniffing import DATE, MOST_WORDS
 from ..tables.table import Chunk, Table
-from .arrays import table_of_arrays
+from .arrays import rate_said, table_of_arrays
 
 _ROWS, _SEEN = 8_192, 3000
 _LONGEST_LIST = 9
@@ -39,15 +40,27 @@ def read(path: Path, instance: int = 0) -> Table:
         return _of_records(lambda dropped: _lines(path, dropped), path)
     stream = open_text(path, head(path, 4096)[1])[0]
     held = _of_edge_impulse(_inner(json.loads(stream.read())))
+    held, said_hz = _named(held), rate_said(held) if isinstance(held, dict) else None
     if isinstance(held, dict) and len(lists := [v for v in held.values() if _is_records(v)]) == 1:
         held = lists[0]
-    if _is_records(held):
-        return _of_records(lambda dropped: iter(held), path)
+    if _is_records(held) or isinstance(held, list) and any(map(_is_numbers, held[:1])):
+        return replace(_of_records(lambda dropped: iter(held), path), said_hz=said_hz)
     if not isinstance(held, dict):
         raise BadRecording(path, "JSON, and no records in it", do=_DO)
     columns = {k: list(v.values()) if isinstance(v, dict) else v for k, v in held.items()}
-    arrays: dict[str, object] = {k: np.array(v) for k, v in columns.items() if isinstance(v, list)}
-    return table_of_arrays(arrays, path, _DO)
+    arrays = {k: np.array(v) for k, v in columns.items() if isinstance(v, list)}
+    return replace(table_of_arrays(arrays, path, _DO), said_hz=said_hz)
+
+
+def _named(held: Any) -> Any:
+    """The rows of an object as records, where it names their cells, too, as pandas does."""
+    values = held.values() if isinstance(held, dict) else ()
+    lists = [value for value in values if isinstance(value, list) and value]
+    rows: list[Any] = next((v for v in lists if all(map(_is_numbers, v[:_SEEN]))), [[]])
+    for names in lists:
+        if all(isinstance(name, str) for name in names) and len(names) == len(rows[0]):
+            return [dict(zip(names, row)) for row in rows]
+    return held
 
 
 def _inner(held: Any) -> Any:

@@ -38,7 +38,8 @@ _CLOCK = re.compile(
 )
 #: A line of such beneath the names says their units.
 _UNIT = re.compile(
-    r"[\[(]?(-|[mun]?s|sec|(m?deg|rad|°)/s|m?dps|m?g|m/s(\^?2|²)|m/\(s\^2\)|°?c|degc|k|lsb)[\])]?$",
+    r"[\[(]?(-|[mun]?s|sec|(m?deg|rad|°)/s|m?dps|m?g|m/s(\^?2|²)|m/\(s\^2\)|°?c|degc|k|lsb"
+    r"|no units)[\])]?$",
     re.I,
 )
 #: What stands before names in a comment, and around each of YEI's: Data format: "%float(GyroX),...
@@ -158,6 +159,9 @@ def _table_in(lines: list[str], every: list[str], encoding: str, path: Path) -> 
     best = max((one for one in found if one), key=lambda one: one[0], default=None)
     if best is None:
         header = next(line for line in lines if line.strip())
+        if all(line.startswith(COMMENTS) for line in lines if line.strip()):
+            problem = f"each line begins with {header[0]!r}, as comments do: {header[:40]}"
+            raise BadRecording(path, problem, row=1, do="take it away before each sample")
         if not any(delimiter in header for delimiter in _DELIMITERS):
             raise BadRecording(path, "no table", do="name a CSV with a row for each sample")
         raise BadRecording(path, "no data row", do=_ONE_LINE)
