@@ -22,6 +22,7 @@ RAW = dict.fromkeys(("gyro", "accel", "temp"), "lsb")
 SCALED = Options(hz=100, gyro_lsb_per_dps=131)
 NOISE = np.random.default_rng(4).normal(size=(50, 6)) * [0.01, 0.02, 0.01, 0.1, 0.1, 0.1]
 UNNAMED_DATES = "\n".join(f"2026-05-01   10:00:{i // 5:02d} 0.8  0.8   0.9" for i in range(50))
+NINE = np.tile(NOISE[:, :3], 3) * np.repeat([9, 1, 9], 3) + [0.8, -0.5, 0.3, 0, 0, 1, 20, -5, 40]
 WITH_A_RATE = "// Sample rate: 50.0Hz\nGyr_X;Gyr_Y;Gyr_Z\n" + "0.1;0.2;0.3\n" * 20
 TENS = np.arange(0, 5000, 10)
 LISTS = pd.DataFrame({"t_s": np.arange(300) / 100, "pulse": 70, "gyro": "[0.8, -0.5, 0.3]"})
@@ -85,6 +86,8 @@ LISTS = pd.DataFrame({"t_s": np.arange(300) / 100, "pulse": 70, "gyro": "[0.8, -
         (COUNTS[["ax", "ay", "az"]], {}, "no column for gx, gy, gz; map it: --map gx=COLUMN:UNIT"),
         (COUNTS[["ax", "ay", "az"]].set_axis([*"xyz"], axis=1), {}, "no rates .they are as long"),
         (lines(COUNTS[["ax", "ay", "az"]].to_numpy()), {}, r"3, ...\); map it: --map gx=COLUMN:UN"),
+        (lines(NINE), {}, "--map az=6:g --map gx=1:dps --map gy=2:dps --map gz=3:dps"),
+        (lines(NINE[:, 3:]), {}, r"3, ...\); map it: --map gx=COLUMN:UNIT"),
         ("#IMU,1,2,3\n" * 9, {}, "row 1: each line begins with '#', as comments do: .*; take it"),
         (json.dumps({"fs": 50, "data": [{"gx_dps": 1, "gy_dps": 2, "gz_dps": 3}] * 10}), {},
          "give --hz 50 .as the file says"),

@@ -312,6 +312,7 @@ def test_a_rate_overrides_a_time_column_and_says_so(tmp_path):
     [
         *("imu.gyro.{}", "w{}", "gyr_{}", "AngVel{}", "Gyroscope_{}", "{}gyro", "Gy{}", "g{}_mean"),
         *("w_RS_S_{} [rad s^-1]", "raw_angular_rate_{}_rad_per_s", "{} (rad/sec)", "g{}_rad_s"),
+        *("Gyro{}_left_leg", "gyro_{}_clean"),
         *("{}-axis (rad/s)", "imu rate {} [radians per second]", "UncompGyro{}", "{}_rate"),
         *(
             "imu2_g{}",

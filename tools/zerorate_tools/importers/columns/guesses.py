@@ -20,6 +20,8 @@ _CALENDAR_S = (1e9, 4.1e9)
 DEGC, _KELVIN = (-60.0, 130.0), (230.0, 400.0)
 #: The widest range of these sensors, and a little.
 FASTEST_DPS = 2050.0
+#: More is no bias of a sound sensor, and what spreads by so small a share is steady.
+BIAS_DPS, STEADY = 25.0, 0.2
 #: So near to one is the squared length of a quaternion that was rounded.
 _OF_ONE = 3e-4
 #: Rates at which anyone records, Hz.
@@ -147,7 +149,7 @@ def likely_columns(table: Table) -> list[str]:
     values = {name: column[whole] for name, column in values.items()}
     times = [name for name in values if name in table.calendar]
     times += [name for name in values if name not in times and only_grows(values[name])]
-    time = next(iter(times), None)
+    time = next((name for name in times if not counts_rows(values[name])), None)
     out = [] if time is None else [f"t_us={time}:{likely_time(values[time])}"]
     rest = {n: values[n] for n in values if n not in times and _varies(values[n])}
     moving = {name: column for name, column in rest.items() if np.ptp(column) > 0}
@@ -176,7 +178,9 @@ def _by_values(
     """
     names = list(values)
     threes = [names[at : at + 3] for at in range(len(names) - 2)]
-    units = [gravity_unit([values[n] for n in t]) if _beside(t, order) else None for t in threes]
+    coarse = [n for n in names if (values[n] % 1 == 0).all()]
+    fine = [_beside(t, order) and not {*t} <= {*coarse} for t in threes]
+    units = [gravity_unit([values[n] for n in t]) if ok else None for t, ok in zip(threes, fine)]
     # 9.8 is met by chance more rarely than 1
     unit = next((unit for unit in ("m/s2", "g") if unit in units), None)
     if unit is None:
@@ -184,13 +188,28 @@ def _by_values(
         counted = (every % 1 == 0).all() or np.abs(np.median(every, axis=1)).max() > FASTEST_DPS
         three = len(names) == len(GYRO) and not as_long_as_gravity([*every])
         return [], RAW if counted else "", names if three else []
-    at = units.index(unit)
+    lengths = [np.linalg.norm([values[name] for name in three], axis=0) for three in threes]
+    found = [number for number, of in enumerate(units) if of == unit]
+    at = min(found, key=lambda number: _spread(lengths[number]))
     accel = [f"{axis}={name}:{unit}" for axis, name in zip(ACCEL, names[at : at + 3])]
+    rate_unit = "rad/s" if unit == "m/s2" else "dps"
     others = [n for n in (*range(at + 3, len(threes)), *range(at - 2)) if _beside(threes[n], order)]
+    others = [n for n in others if not _is_field(lengths[n], RATE_DPS[rate_unit])]
     force = np.array([values[name] for name in names[at : at + 3]])
     told = {n: dps_of_one(np.array([values[m] for m in threes[n]]), force, t_s) for n in others}
     rates = min(others, key=lambda n: size.left if (size := told[n]) else 1.0, default=None)
-    return accel, "rad/s" if unit == "m/s2" else "dps", [] if rates is None else threes[rates]
+    return accel, rate_unit, [] if rates is None else threes[rates]
+
+
+def _spread(lengths: np.ndarray) -> float:
+    """How wide the middle half of lengths is, as a share of the usual one."""
+    low, usual, high = np.quantile(lengths, [0.25, 0.5, 0.75])
+    return float((high - low) / usual) if usual else np.inf
+
+
+def _is_field(lengths: np.ndarray, dps: float) -> bool:
+    """Whether columns are always as long, and longer than a bias: as the earth's field is."""
+    return _spread(lengths) < STEADY and float(np.median(lengths)) * dps > BIAS_DPS
 
 
 def _beside(names: list[str], order: list[str]) -> bool:
@@ -225,6 +244,11 @@ def only_grows(values: np.ndarray) -> bool:
     steps = np.diff(values)
     forward, back = np.sum(steps > 0), np.sum(~(steps >= 0))
     return bool(1000 * back < len(steps) < 2 * forward)
+
+
+def counts_rows(values: np.ndarray) -> bool:
+    """Whether each is one more than the one before."""
+    return len(values) > 1 and bool((np.diff(values) == 1).all())
 
 
 def likely_time(values: np.ndarray) -> str:
@@ -355,6 +379,5 @@ def _usual_step(values: np.ndarray) -> float:
 def _time_words(values: np.ndarray) -> str:
     likely = likely_units_of_time(_usual_step(values))
     would = " or ".join(f"{unit} ({hz:.4g} Hz)" for unit, hz in likely.items())
-    counts = len(values) > 1 and (np.diff(values) == 1).all()
-    rows = "; or --hz, rows a second, if it counts them" if counts else ""
+    rows = "; or --hz, rows a second, if it counts them" if counts_rows(values) else ""
     return f"--time-unit {would or 'with one of ' + ', '.join(TIME_S)}{rows}"

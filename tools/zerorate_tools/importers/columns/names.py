@@ -25,10 +25,13 @@ _ACCEL = re.compile(
     r"|(?:.*imu\d*)?(?:ac?|gf|fb))"
     + f"{_AXIS}{_MADE}{_NUMBER}$|^{_AXIS}(?:accelerometer|accel|acc)$"
 )
+#: Whose axis stands before a part of a body, say: GyroX_left_leg.
+_GYRO_OF = re.compile(rf".*(?:gyroscope|gyro|gyr|angvel){_AXIS}[a-z0-9]*$")
+_ACCEL_OF = re.compile(rf".*(?:accelerometer|acceleration|accel|acc){_AXIS}[a-z0-9]*$")
 #: Less gravity, or gravity as a filter has it: no measure of it.
 _FREE = re.compile(r".*(?:freeacc|useracc|linacc|gravity)|lacc")
 #: How sure numbers are, or what somebody takes away: no readings.
-_SPREAD = re.compile(r".*(?:covariance|variance|stddev|sigma|bias(?:dps|rads)?[xyz0-9]*$)")
+_SPREAD = re.compile(r".*(?:covariance|variance|std|sigma|m(?:in|ax)$|bias(?:dps|rads)?[xyz0-9]*$)")
 #: As the sensor has it, and less a bias that somebody took away; motionRotation is CoreMotion's.
 _RAW = re.compile(r".*(?:raw|uncal|uncomp|unfilt)")
 _CORRECTED = re.compile(r".*(?:corrected|compensated|calibrated|unbiased|filtered|motionrotation)")
@@ -75,6 +78,7 @@ def gyro_groups(names: list[str]) -> list[dict[str, str]]:
     """
     names = _of_three(names)
     groups = _groups(names, _GYRO, "g") or _groups(_in_units_of("gx", names), _LAST_AXIS, "g")
+    groups = groups or _groups(names, _GYRO_OF, "g")
     return sorted(groups, key=lambda group: _corrected(spelled(group["gx"])))
 
 
@@ -85,7 +89,8 @@ def _corrected(text: str) -> int:
 def accel_groups(names: list[str]) -> list[dict[str, str]]:
     """Columns that go together as acceleration with gravity in it: {ax, ay, az: name}."""
     names = [name for name in _of_three(names) if not _FREE.match(spelled(name))]
-    return _groups(names, _ACCEL, "a") or _groups(_in_units_of("ax", names), _LAST_AXIS, "a")
+    groups = _groups(names, _ACCEL, "a") or _groups(_in_units_of("ax", names), _LAST_AXIS, "a")
+    return groups or _groups(names, _ACCEL_OF, "a")
 
 
 def most_alike(groups: list[dict[str, str]], gyro: dict[str, str], instance: int) -> dict[str, str]:

@@ -19,7 +19,15 @@ from ...recordings.turning import (
     turn_too_far,
     turns_otherwise,
 )
-from ..columns.guesses import DEGC, GRAVITY, likely_units_of_time, rate_unit_of, unit_words
+from ..columns.guesses import (
+    BIAS_DPS,
+    DEGC,
+    GRAVITY,
+    STEADY,
+    likely_units_of_time,
+    rate_unit_of,
+    unit_words,
+)
 from ..columns.mapping import map_words
 from ..columns.plan import Plan
 from .gather import Gathered
@@ -40,7 +48,6 @@ _QUIETEST, _LOUDEST = 2e-4, 0.1
 _SINGLE_HZ = 10.0
 #: Of one sample to the next, where nothing shakes.
 _UNSHAKEN_G = 0.02
-_STEADY_DPS = 25.0
 #: At rest the rates spread by their noise, moved by a multiple of it.
 _STILL = 3.0
 #: A damaged line was a sample, and took its time; so many are lines of another kind.
@@ -161,7 +168,7 @@ def _of_rates(found: Gathered, plan: Plan, path: Path) -> list[str]:
     factor = plan.factors["gx"][0]
     meant = ""
     low, high = np.quantile(rates, [0.25, 0.75], axis=1)
-    if middle > _STEADY_DPS and (high - low).max() < 0.2 * middle:
+    if middle > BIAS_DPS and (high - low).max() < STEADY * middle:
         said = f"a steady rate of {middle:.3g} dps is no bias of a sound sensor at rest"
         meant = "dps" if factor > 1 else ""
     elif (

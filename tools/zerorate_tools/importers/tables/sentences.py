@@ -28,14 +28,15 @@ _CLOCK = (
 _NUMBER = r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|nan\b)"
 _EACH = re.compile(rf"(?=[-+.\dn])(?<![\w./^])(?<!\w-)({_CLOCK}|{_NUMBER})(?!\d)".encode(), re.I)
 COLOUR = re.compile(rb"\x1b\[[\d;]*m")
-_HEADING, _ITEM = re.compile(rb"([ \t]*)([A-Za-z][^:=]*):\s*$"), re.compile(rb"\s*- ")
+_HEADING = re.compile(rb"([ \t]*)([A-Za-z][^:={]*?) ?[:{]\s*$")
+_ITEM = re.compile(rb"\s*- [-\d.]")
 #: What ends a label; and a topic, which needs no colon.
 _LABEL = re.compile(r"""[:=][\s"'\[({]*$|^\W*[\w.]*[A-Za-z]\w*/[\w./]*[A-Za-z]\w*\s+$""")
 _WORDS = re.compile(r"[A-Za-z_][\w./]*(?:[ -][A-Za-z_][\w./]*)*")
 #: A pair whose value is a word.
 _WORDED = re.compile(r"\w+=[^\s=:,]*[^\W\d][^\s=:,]*[\s,]+")
 _IN_BRACKETS = re.compile(r"\s*[\[(]([^\[\]()]+)[\])]")
-_BEHIND = re.compile(r"\s*([^\s,;|]+)(?!\s*[:=])")
+_BEHIND = re.compile(r"[\s\])}]*([^\s,;|\])}]+)(?!\s*[:=])")
 #: ESP-IDF's log: I (320) imu: gx=0.8, in milliseconds.
 _ESP = re.compile(r"^\W*[EWIDV] \($")
 _AXIS = re.compile("[xyz]", re.I)

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...errors import BadRecording
 from ...recordings.text import head
-from ..columns.guesses import only_grows
+from ..columns.guesses import counts_rows, only_grows
 from ..columns.units import without_unit
 from .sentences import COLOUR, COMMENTS, DAY, Kind, Reader, Rows, columns_of, kinds_in
 
@@ -149,7 +149,7 @@ def _goes_on(cells: list[str]) -> bool:
     if any(map(DATE.match, cells[:1])):
         return True
     values = np.array(cells, float)
-    return only_grows(values) and bool((np.diff(values) != 1).any())
+    return only_grows(values) and not counts_rows(values)
 
 
 def _table_in(lines: list[str], every: list[str], encoding: str, path: Path) -> Form:
