@@ -3,21 +3,25 @@
 import subprocess
 import sys
 import tempfile
+import time
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
 from zerorate import Corrector
 from zerorate_tools.errors import MissingRuntime, ZerorateError
+from zerorate_tools.host import FloatCorrector
 from zerorate_tools.kernels.reading import firmware_package
 from zerorate_tools.runtimes import find
 from zerorate_tools.runtimes.node import find_wasm
 
 from .limits import COST, limits_table, verdicts
 from .native.native_cost import code_bytes, effects_cost, native_cost
-from .replay_speed import HOURS, replay_speed
+from .replay_speed import HOURS, RUNS, replay_speed
 from .tables import machine, machine_line, number, table
-from .workload import Workload, workload
+from .workload import REST, Workload, workload
 
 _MADE = """\
 Made by `zerorate bench cost`, which also writes `--json FILE`. Counts of instructions and bytes
@@ -43,6 +47,10 @@ _REPLAY = """\
 Seconds are processor time of all threads together, the least of three runs. Memory is the peak of
 the process. It reads Parquet and writes Parquet with the bias, source and quality of each sample.
 It learns at rest alone (`--no-motion --no-gravity`); the other sources take about as long again.
+"""
+_PYTHON = """\
+Processor time that `FloatCorrector.update` takes for a sample under CPython, the least of three
+runs. `replay` runs the same kernels compiled.
 """
 _QUICK_HOURS = (1.0, 4.0)
 _NAMES = {"thumb": "Cortex-M0+", "rv32": "RV32"}
@@ -75,7 +83,7 @@ print((taken(600, 6600) - taken(600, 601)) / 5999)
 
 def steps() -> int:
     """How often `run` advances: for each of `_measures`."""
-    return 7
+    return 8
 
 
 def run(quick: bool, advance: Callable[[float], None]) -> dict[str, Any]:
@@ -108,6 +116,7 @@ def _measures(work: Workload, hours) -> dict[str, Callable[[], Any]]:
         "import_heap_bytes": import_heap_bytes,
         "mpy_bytes": mpy_sizes,
         "replay_by_hours": lambda: replay_speed(hours),
+        "python_us_by_input": lambda: python_us(work),
     }
 
 
@@ -131,6 +140,10 @@ def sections(found: Mapping[str, Any]) -> Iterator[str]:
     yield "## Replay on one core\n"
     yield _REPLAY
     yield table(["at 100 Hz", "samples/s", "kernels alone", "peak MB"], list(_replay(found)))
+    yield "## Sample by sample on a host\n"
+    yield _PYTHON
+    rows = [[name, *map(number, us)] for name, us in found["python_us_by_input"].items()]
+    yield table(["us a sample", "`motion=False, gravity=False`", "learning in motion, too"], rows)
     for name, why in found["left_out"].items():
         yield f"Left out: {name}: {why}.\n"
 
@@ -175,6 +188,29 @@ def _replay(found: Mapping[str, Any]) -> Iterator[list[str]]:
             f"{alone:,.0f}" if alone else "",
             number(one["peak_bytes"] / 1e6),
         ]
+
+
+def python_us(work: Workload) -> dict[str, list[float]]:
+    """What a device does -> microseconds of processor time of a FloatCorrector, for a sample.
+
+    Two each: of one that learns at rest alone, and of one that learns from all.
+    """
+    moving = work.rows[:, 1:].astype(float)
+    still = np.random.default_rng(1).normal([0, 0, 16384, 0, 40, -25, 10], 6, moving.shape)
+    frames = {"two minutes of rests and motion": moving, "two minutes of rest": still}
+    return {
+        name: [min(_python_us(rows, options) for _ in range(RUNS)) for options in (REST, {})]
+        for name, rows in frames.items()
+    }
+
+
+def _python_us(rows: NDArray[Any], options: Mapping[str, Any]) -> float:
+    corrector = FloatCorrector(100.0, full_scale_dps=250.0, full_scale_g=2.0, **options)
+    rates, accels = (rows[:, 4:] / 131.0).tolist(), (rows[:, :3] / 16384.0).tolist()
+    begun = time.process_time()
+    for rate, accel in zip(rates, accels):
+        corrector.update(rate, accel)
+    return 1e6 * (time.process_time() - begun) / len(rows)
 
 
 def heap_bytes_per_update(work: Workload) -> dict[str, float]:
