@@ -28,7 +28,7 @@ ATTACKS = {
     ),
     "models": ("cuts, turned bits, noise", f"{_PYTEST} host_tests/tools -k test_model"),
     "readers": ("damaged files", f"{_PYTEST} host_tests/hostile -k any"),
-    "logs": ("damaged logs of 15 formats", "host_tests.hostile.many_logs"),
+    "logs": ("damaged logs of 16 formats", "host_tests.hostile.many_logs"),
     "commands": ("odd files, names, numbers, places", "host_tests.hostile.odd_commands"),
     "memory": (
         "six files that unpack to gigabytes",

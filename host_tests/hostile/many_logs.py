@@ -27,7 +27,7 @@ from collections import Counter
 from pathlib import Path
 from types import SimpleNamespace
 
-from zerorate_bench.foreign_logs import arrays, flights, phones, robots
+from zerorate_bench.foreign_logs import arrays, flights, phones, robots, sensors
 from zerorate_bench.foreign_logs.world import World
 from zerorate_tools.bounds import ALONE, MEMORY_MB
 from zerorate_tools.errors import ZerorateError
@@ -76,6 +76,7 @@ FORMATS = {
     "mcap": (robots.mcap, robots.mcap_json),
     "json": (arrays.json_columns, arrays.json_records, arrays.json_lists, robots.json_lines),
     "csv": (robots.euroc, robots.uzh_fpv, flights.mavlogdump, flights.blackbox_explorer),
+    "words": (sensors.in_words, sensors.echoed, sensors.parted),
     "csv.gz": (gz,),
     "zip": (zipped,),
 }

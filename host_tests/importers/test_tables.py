@@ -8,6 +8,7 @@ from operator import xor
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
 import pytest
 from zerorate_tools.importers import Options, import_recording, parsed_mapping, read_foreign
 from zerorate_tools.importers.tables import checked_lines, delimited
@@ -159,6 +160,10 @@ def test_any_encoding_is_read(tmp_path, encoding):
     assert recording.temp_degc()[0] == pytest.approx(25)
 
 
+def test_a_torn_year_is_a_time_too():
+    assert delimited.seconds_of(pa.array(["2970-01-01T00:00:00", "x"]))[0] == 31556995200
+
+
 THREE = table(50)[RATES].to_numpy()
 ROWS = [f"{i / 100},{x:.4f},{y:.4f},{z:.4f}" for i, (x, y, z) in enumerate(THREE)]
 PRINTED = [str({"t": i / 100, "gyro": dict(zip("xyz", row.tolist()))})
@@ -218,7 +223,8 @@ COUNTED, BY_NUMBER = Options(hz=100.0), "t_us=1:s gx=2:dps gy=3:dps gz=4:dps"
         ([row.format("[12:00:01.250]") for row in TAGGED], "", COUNTED, 0),
         (["rst:0x1 (POWERON_RESET)", "I (28) boot: ESP-IDF v5.1", *ESP],
          "gx=gx:dps gy=gy:dps gz=gz:dps", None, 0),
-        (["ready!", *PARTED, PARTED[0][:-20]], "gx=gX:dps gy=gY:dps gz=gZ:dps", None, 1),
+        (["ready!", *PARTED, "1 -> gX = 1e999", "2999-05-01 12:00:00 -> gX = 1 | gY = 1 | gZ = 0"],
+         "gx=gX:dps gy=gY:dps gz=gZ:dps", None, 2),
         (IN_TURNS, "", None, 0),
         (ECHOED, "", None, 0),
         (LONG, "gx=gx:dps gy=gy:dps gz=gz:dps", None, 0),

@@ -110,10 +110,10 @@ Rotation X: {:.2f}, Y: {:.2f}, Z: {:.2f} rad/s
 Temperature: {:.2f} degC
 
 """
-log.text("Adafruit's sketch, three lines of words a sample",
+in_words = log.text("Adafruit's sketch, three lines of words a sample",
     lambda w: ("Adafruit MPU6050 test!\nMPU6050 Found!\n"
         + _sketch(_IN_WORDS, w.mps2, w.rad, w.degc)), words="--hz 100")
-log.text("a sketch's lines behind the monitor's clock, bars between",
+parted = log.text("a sketch's lines behind the monitor's clock, bars between",
     lambda w: "".join(f"{at} -> {line}\n" for at, line in zip(w.dates("%H:%M:%S.%f", 3),
         _sketch("gX = {:.4f} | gY = {:.4f} | gZ = {:.4f} | tmp = {:.2f}\n", w.dps, w.degc)
         .splitlines())), words="--gyro-unit dps --temp-unit degc")
@@ -145,8 +145,8 @@ linear_acceleration:
   z: {!r}
 ---
 """
-log.text("ros2 topic echo", lambda w: _sketch(_ECHOED, 5 + w.t_s // 1, np.rint(w.t_s % 1 * 1e9),
-    w.rad, w.mps2))
+echoed = log.text("ros2 topic echo",
+    lambda w: _sketch(_ECHOED, 5 + w.t_s // 1, np.rint(w.t_s % 1 * 1e9), w.rad, w.mps2))
 log.csv("Ouster, its IMU packets as CSV",
     lambda w: table("sys_ts,accel_ts,gyro_ts,accel{XYZ},angVel{XYZ}",
         *((w.t_s * 1e9).astype(np.int64) + late for late in (9 * 10**11, *[9 * 10**11 + 12] * 2)),

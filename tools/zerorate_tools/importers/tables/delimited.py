@@ -181,10 +181,9 @@ def seconds_of(cells: pa.Array) -> np.ndarray:
         return _since_midnight(text)
     text = text.str.replace(r"^(\d{4})/(\d\d)/", r"\1-\2-", regex=True)
     stamps = pandas.to_datetime(text, format="ISO8601", utc=True, errors="coerce")
-    since = (stamps - pandas.Timestamp(0, tz="UTC")).to_numpy()
-    return since.astype("timedelta64[ns]").astype(float) * 1e-9 + np.where(
-        np.isnat(since), np.nan, 0.0
-    )
+    # nanoseconds would not hold a torn year
+    since = stamps.dt.as_unit("us").to_numpy("datetime64[us]")
+    return np.where(np.isnat(since), np.nan, since.astype(float) * 1e-6)
 
 
 def _since_midnight(text) -> np.ndarray:

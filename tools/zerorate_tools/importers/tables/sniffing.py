@@ -148,7 +148,8 @@ def _of_sentences(kinds: tuple[Kind, ...], lines: list[bytes], encoding: str) ->
 def _goes_on(cells: list[str]) -> bool:
     if any(map(DATE.match, cells[:1])):
         return True
-    values = np.array(cells, float)
+    values = np.array([float(cell) if _NUMBER.match(cell) else np.nan for cell in cells])
+    values[np.isinf(values)] = np.nan
     return only_grows(values) and not counts_rows(values)
 
 
