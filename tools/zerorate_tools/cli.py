@@ -100,6 +100,10 @@ class _Parser(argparse.ArgumentParser):
     #: The parser entered last: that of the command that was typed.
     entered: "argparse.ArgumentParser"
 
+    def __init__(self, *args: Any, **keywords: Any) -> None:
+        super().__init__(*args, **keywords)
+        self.color = False  # which Python 3.14 has, and _Printable would write as letters
+
     def parse_known_args(self, *args: Any, **keywords: Any) -> Any:
         """As argparse's, whose top parser reports the words that a command's own left over."""
         _Parser.entered = self
