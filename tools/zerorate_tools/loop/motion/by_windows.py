@@ -7,7 +7,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from .columns import MATRIX
-from .device import LEVEL, check_one_device, device_of, groups
+from .device import LEVEL, DifferentDevices, check_one_device, device_of, groups
 from .heading import heading_lost
 from .matrix import FOLDS, beside, by_recording, fit, of_what_shows_more
 from .moving import Moving, check_axes
@@ -136,7 +136,10 @@ def _left_out(shown, train, holdout) -> Iterator[tuple[Moving, np.ndarray]]:
 
 
 def _deployed(train: list[Moving]) -> np.ndarray:
-    shown = _by_windows(train, [])
+    try:
+        shown = _by_windows(train, [])
+    except DifferentDevices:  # all together are of one
+        return np.zeros((3, 3))
     return shown.deployed if shown is not None and shown.found else np.zeros((3, 3))
 
 

@@ -129,12 +129,18 @@ def fit(recordings: list[Moving]) -> tuple[np.ndarray, list[Fitted]]:
 
 
 def by_recording(said: Iterable[tuple[Fitted, Shown]]) -> dict[str, Shown]:
-    """What each recording says, by its name: the sum of what it says in each way."""
-    total: dict[str, Shown] = {}
+    """What each recording says, by its name: the sum of what it says in each way, less sure by as
+    much as the ways contradict each other."""
+    ways: dict[str, list[Shown]] = {}
     for fitted, shown in said:
-        name = fitted.moving.name
-        total[name] = total.get(name, Shown()) + shown
-    return total
+        ways.setdefault(fitted.moving.name, []).append(shown)
+    return {name: _as_one(every) for name, every in ways.items()}
+
+
+def _as_one(ways: list[Shown]) -> Shown:
+    apart = distance(*ways) / MATRIX if len(ways) > 1 else 1.0
+    whole, less_sure = sum(ways, Shown()), max(1.0, apart)
+    return Shown(whole.normal / less_sure, whole.right / less_sure)
 
 
 def beside(moving: Moving, matrix: np.ndarray) -> Fitted | None:
