@@ -176,7 +176,7 @@ OWN_UNIT = [str({"t_s": i / 100, "gyro": {"unit": "deg/s", "now": dict(zip("xyz"
 SERIAL = ["=~= PuTTY log 2026.05.08 =~=", "08,0.8,0.9", *(f"25,{row}" for row in ROWS)]
 ESP = [f"\x1b[0;32mI ({320 + 10 * i}) imu: gx={r[0]} gy={r[1]} gz={r[2]}\x1b[0m"
        for i, r in enumerate(THREE)]  # fmt: skip
-PARTED = [f"12:00:00.{10 * i:03d} -> gX = {x} | gY = {y} | gZ = {z}"
+PARTED = [f"12:00:00.{10 * i:03d} -> gX = {x}dps gY = {y}dps | gZ = {z}dps"
           for i, (x, y, z) in enumerate(THREE)]  # fmt: skip
 IN_TURNS = [line for i, (x, y, z) in enumerate(THREE)
             for line in (f"[2026-05-01 12:00:00,{10 * i:03d}] INFO: Temperature: 25.5 C",
@@ -223,8 +223,8 @@ COUNTED, BY_NUMBER = Options(hz=100.0), "t_us=1:s gx=2:dps gy=3:dps gz=4:dps"
         ([row.format("[12:00:01.250]") for row in TAGGED], "", COUNTED, 0),
         (["rst:0x1 (POWERON_RESET)", "I (28) boot: ESP-IDF v5.1", *ESP],
          "gx=gx:dps gy=gy:dps gz=gz:dps", None, 0),
-        (["ready!", *PARTED, "1 -> gX = 1e999", "2999-05-01 12:00:00 -> gX = 1 | gY = 1 | gZ = 0"],
-         "gx=gX:dps gy=gY:dps gz=gZ:dps", None, 2),
+        (["ready!", *PARTED, "1 -> gX = 1e999",
+          "2999-05-01 12:00:00 -> gX = 1dps gY = 1dps | gZ = 0dps"], "", None, 2),
         (IN_TURNS, "", None, 0),
         (ECHOED, "", None, 0),
         (LONG, "gx=gx:dps gy=gy:dps gz=gz:dps", None, 0),
@@ -318,7 +318,7 @@ def test_a_rate_overrides_a_time_column_and_says_so(tmp_path):
     [
         *("imu.gyro.{}", "w{}", "gyr_{}", "AngVel{}", "Gyroscope_{}", "{}gyro", "Gy{}", "g{}_mean"),
         *("w_RS_S_{} [rad s^-1]", "raw_angular_rate_{}_rad_per_s", "{} (rad/sec)", "g{}_rad_s"),
-        *("Gyro{}_left_leg", "gyro_{}_clean"),
+        *("Gyro{}_left_leg", "gyro_{}_clean", "in_anglvel_{}"),
         *("{}-axis (rad/s)", "imu rate {} [radians per second]", "UncompGyro{}", "{}_rate"),
         *(
             "imu2_g{}",

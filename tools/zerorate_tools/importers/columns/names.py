@@ -12,15 +12,15 @@ _MADE = "(?:cal|raw|mean|avg)?"
 _NUMBER = r"\d?"
 _CHIP = r"(?:(?:bm[agi]|i[ai]m|icm|lis|lsm|mpu)\d[a-z0-9]*?)?"
 _GYRO = re.compile(
-    r"(?:.*(?:gyroscope|gyrorotation|gyro|gyr|angularvelocity|ang(?:ular)?rate|angvel|rotationrate|omega)"
-    rf"\d?{_CHIP}(?:uncalibrated|uncal|calibrated|corrected|unfilt|adc|raw|rad|data|rate|dps|values?"
+    r"(?:.*(?:gyroscope|gyrorotation|gyro|gyr|angularvelocity|ang(?:ular)?rate|angl?vel|rotationrate|omega)"
+    rf"\d?{_CHIP}(?:uncalibrated|uncal|calibrated|corrected|unfilt|adc|raw|rad|data|rate|dps|values?|v"
     r"|static|noise){0,2}"
     r"|(?:.*imu\d*)?(?:gy|[wg]|wb|pqr))"
     + f"{_AXIS}{_MADE}{_NUMBER}$|^{_AXIS}(?:gyroscope|gyro|gyr)$"
 )
 _ACCEL = re.compile(
     r"(?:.*(?:accelerometer|acceleration|accel|acc|specificforce)"
-    rf"\d?{_CHIP}(?:uncalibrated|uncal|calibrated|smooth|adc|raw|data|ms2|m?g|values?|vector|ln|wr|static"
+    rf"\d?{_CHIP}(?:uncalibrated|uncal|calibrated|smooth|adc|raw|data|ms2|m?g|values?|v|vector|ln|wr|static"
     r"|noise){0,2}"
     r"|(?:.*imu\d*)?(?:ac?|gf|fb))"
     + f"{_AXIS}{_MADE}{_NUMBER}$|^{_AXIS}(?:accelerometer|accel|acc)$"

@@ -90,8 +90,8 @@ def _named(heading: str, beneath: bool, texts: tuple[bytes, ...]) -> Kind:
     whose, unit = _without_unit(heading)
     words = [_WORDED.sub("", text.decode("utf-8", "replace")) for text in texts]
     names, units = [], []
-    for at, text in enumerate(words[:-1]):
-        text, own = _without_unit(text)
+    for at in range(len(words) - 1):
+        text, own = _without_unit(words[at])
         name, whose = _name(text, whose, beneath and not at)
         behind = _BEHIND.match(words[at + 1])
         if behind and _is_unit(behind[1].strip("[]()")):
