@@ -25,6 +25,7 @@ UNNAMED_DATES = "\n".join(f"2026-05-01   10:00:{i // 5:02d} 0.8  0.8   0.9" for 
 NINE = np.tile(NOISE[:, :3], 3) * np.repeat([9, 1, 9], 3) + [0.8, -0.5, 0.3, 0, 0, 1, 20, -5, 40]
 WITH_A_RATE = "// Sample rate: 50.0Hz\nGyr_X;Gyr_Y;Gyr_Z\n" + "0.1;0.2;0.3\n" * 20
 TENS = np.arange(0, 5000, 10)
+TURNED = pd.DataFrame({"t_s": TENS / 1e3, "gx": np.sin(TENS), "gy": 0.0, "gz": np.cos(TENS)})
 LISTS = pd.DataFrame({"t_s": np.arange(300) / 100, "pulse": 70, "gyro": "[0.8, -0.5, 0.3]"})
 
 
@@ -86,6 +87,9 @@ LISTS = pd.DataFrame({"t_s": np.arange(300) / 100, "pulse": 70, "gyro": "[0.8, -
         (COUNTS[["ax", "ay", "az"]], {}, "no column for gx, gy, gz; map it: --map gx=COLUMN:UNIT"),
         (COUNTS[["ax", "ay", "az"]].set_axis([*"xyz"], axis=1), {}, "no rates .they are as long"),
         (lines(COUNTS[["ax", "ay", "az"]].to_numpy()), {}, r"3, ...\); map it: --map gx=COLUMN:UN"),
+        (TURNED, {}, "no column for gx, gy, gz; map it"),
+        (TURNED.assign(wx=0.01, wy=0.02, wz=0.03), {}, "units of columns 'wx', 'wy', 'wz' are not"),
+        (table(500).assign(t_s=TENS / 6e4).rename(columns={"t_s": "at min"}), {}, "give --hz, s"),
         (lines(NINE), {}, "--map az=6:g --map gx=1:dps --map gy=2:dps --map gz=3:dps"),
         (lines(NINE[:, 3:]), {}, r"3, ...\); map it: --map gx=COLUMN:UNIT"),
         ("#IMU,1,2,3\n" * 9, {}, "row 1: each line begins with '#', as comments do: .*; take it"),

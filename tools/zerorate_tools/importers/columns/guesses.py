@@ -310,6 +310,17 @@ def as_long_as_gravity(columns: list[np.ndarray]) -> bool:
     return near or gravity_unit(columns) is not None
 
 
+def turns_as_gravity(columns: list[np.ndarray]) -> bool:
+    """Whether three columns keep their length while their direction changes widely."""
+    known = np.array(columns)[:, np.isfinite(columns).all(axis=0)]
+    lengths = np.linalg.norm(known, axis=0)
+    if not len(lengths):
+        return False
+    low, high = np.quantile([lengths, *known], [0.05, 0.95], axis=1)
+    widths = (high - low) / np.median(lengths)
+    return bool(widths[0] < STEADY and widths[1:].max() > 0.5)
+
+
 def gravity_unit(columns: list[np.ndarray]) -> str | None:
     """The unit in which three columns are as long as gravity."""
     usual = _usual_length(columns)
@@ -355,7 +366,7 @@ def _by_pace(
     """The only unit in which anyone would have recorded so fast, where the name is of no other;
     of several that in which rates turn gravity."""
     likely = likely_units_of_time(_usual_step(first[column]))
-    if _OTHER_TIME.search(column.lower()):
+    if of_other_time(column):
         return None, ""
     turned = ""
     if len(likely) > 1:
@@ -366,6 +377,11 @@ def _by_pace(
         return None, ""
     unit, hz = next(iter(likely.items()))
     return unit, f"that is {hz:.4g} Hz{turned}"
+
+
+def of_other_time(column: str) -> bool:
+    """Whether a name says a unit of time that a recording cannot have: time_min."""
+    return bool(_OTHER_TIME.search(column.lower()))
 
 
 def _usual_step(values: np.ndarray) -> float:

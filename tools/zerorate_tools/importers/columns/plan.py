@@ -21,8 +21,10 @@ from .guesses import (
     is_unit,
     likely_columns,
     likely_time,
+    of_other_time,
     only_grows,
     ready_words,
+    turns_as_gravity,
 )
 from .mapping import Mapped, factor_in, map_words, parsed_mapping
 from .units import RAW, TIME_S, factors_of, kind_of, unit_in_name, unit_in_quotient, units_of
@@ -151,7 +153,7 @@ def _found(
         return {mapped.target: mapped for mapped in map(parsed_mapping, table.mapping)}
     names: dict[str, str] = {}
     if not all(axis in given for axis in GYRO):
-        groups = usual.gyro_groups(table.names)
+        groups = _groups_of_rates(table)
         if len(groups) > 1:
             also = ", ".join(group["gx"] for group in groups)
             notes.append(f"of several gyroscopes ({also}) number {instance}: choose by --instance")
@@ -171,6 +173,18 @@ def _found(
     elif time:
         found[TIME] = Mapped(TIME, time)
     return found
+
+
+def _groups_of_rates(table: Table) -> list[dict[str, str]]:
+    """Columns called as rates; not gx gy gz as long as gravity that turn as a force does, or beside
+    others, where nothing else is called as a force: then they are in g."""
+    groups = usual.gyro_groups(table.names)
+    plain = next((one for one in groups if usual.spelled(one["gx"]) == "gx"), None)
+    if plain is None or usual.accel_groups(table.names) or unit_in_name("gx", plain["gx"]):
+        return groups
+    columns = [*table.first_rows([*plain.values()]).values()]
+    is_force = as_long_as_gravity(columns) and (len(groups) > 1 or turns_as_gravity(columns))
+    return [one for one in groups if not (is_force and one is plain)]
 
 
 def _with_gravity(table: Table) -> list[dict[str, str]]:
@@ -296,7 +310,7 @@ def hz_words(table: Table) -> str:
         steps = np.diff(values)
         if only_grows(values) and steps.min() > 0:
             words = map_words(TIME, name, likely_time(values))
-            if (steps % 1).any():
+            if (steps % 1).any() and not of_other_time(name):
                 return words
             # whole numbers may count anything
             maybe = maybe or (f", or {words} if it is a time" if usual.is_clock(name) else "")
