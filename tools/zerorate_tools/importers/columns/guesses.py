@@ -27,7 +27,8 @@ _OF_ONE = 3e-4
 #: Rates at which anyone records, Hz.
 _LIKELY_HZ = (0.02, 40_000.0)
 #: Names of times in none of the units that a recording may have.
-_OTHER_TIME = re.compile(r"min|hour|hr|day|frame|tick|count")
+_LONG_TIME = re.compile("min|hour|hr|day")
+_OTHER_TIME = re.compile(f"{_LONG_TIME.pattern}|frame|tick|count")
 _TOGETHER = 64
 _PER_HOUR = re.compile(r"(?:deg|°)\w*\s*(?:/|per)\s*h")
 #: Where no time is known; of 25 Hz or 400 Hz rates in their usual units still have a size.
@@ -190,7 +191,10 @@ def _by_values(
         return [], RAW if counted else "", names if three else []
     lengths = [np.linalg.norm([values[name] for name in three], axis=0) for three in threes]
     found = [number for number, of in enumerate(units) if of == unit]
-    at = min(found, key=lambda number: _spread(lengths[number]))
+    at = found[0]
+    for number in found:  # a bias may be as long by chance, and is not as steady
+        steadier = 2 * _spread(lengths[number]) < _spread(lengths[at])
+        at = number if steadier and number >= at + len(GYRO) else at
     accel = [f"{axis}={name}:{unit}" for axis, name in zip(ACCEL, names[at : at + 3])]
     rate_unit = "rad/s" if unit == "m/s2" else "dps"
     others = [n for n in (*range(at + 3, len(threes)), *range(at - 2)) if _beside(threes[n], order)]
@@ -366,7 +370,7 @@ def _by_pace(
     """The only unit in which anyone would have recorded so fast, where the name is of no other;
     of several that in which rates turn gravity."""
     likely = likely_units_of_time(_usual_step(first[column]))
-    if of_other_time(column):
+    if _OTHER_TIME.search(column.lower()):
         return None, ""
     turned = ""
     if len(likely) > 1:
@@ -379,9 +383,9 @@ def _by_pace(
     return unit, f"that is {hz:.4g} Hz{turned}"
 
 
-def of_other_time(column: str) -> bool:
+def of_long_time(column: str) -> bool:
     """Whether a name says a unit of time that a recording cannot have: time_min."""
-    return bool(_OTHER_TIME.search(column.lower()))
+    return bool(_LONG_TIME.search(column.lower()))
 
 
 def _usual_step(values: np.ndarray) -> float:

@@ -21,7 +21,7 @@ from .guesses import (
     is_unit,
     likely_columns,
     likely_time,
-    of_other_time,
+    of_long_time,
     only_grows,
     ready_words,
     turns_as_gravity,
@@ -310,7 +310,7 @@ def hz_words(table: Table) -> str:
         steps = np.diff(values)
         if only_grows(values) and steps.min() > 0:
             words = map_words(TIME, name, likely_time(values))
-            if (steps % 1).any() and not of_other_time(name):
+            if (steps % 1).any() and not of_long_time(name):
                 return words
             # whole numbers may count anything
             maybe = maybe or (f", or {words} if it is a time" if usual.is_clock(name) else "")
