@@ -95,6 +95,7 @@ def _moving(folder):
 def _figures(parts):
     """{figure: numbers, or a word} of (name, fields)."""
     every = {f"{name} {key}".strip(): of for name, fields in parts for key, of in fields.items()}
+    every = {n: [*of.values()] if isinstance(of, dict) else of for n, of in every.items()}
     every = {name: of for name, of in every.items() if of is not None and np.size(of)}
     return {n: of if isinstance(of, str) else np.nan_to_num(of) for n, of in every.items()}
 

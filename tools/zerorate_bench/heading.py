@@ -16,7 +16,7 @@ from zerorate_tools.demo.broad import Trial, trials
 from zerorate_tools.loop.motion.by_windows import by_windows
 from zerorate_tools.loop.motion.device import DifferentDevices, Shown, distance
 from zerorate_tools.loop.motion.matrix import beside, fit
-from zerorate_tools.loop.motion.moving import Moving, moving_of
+from zerorate_tools.loop.motion.moving import Moving, in_the_axes_of, moving_of
 from zerorate_tools.recordings.writing import write_recording
 
 from .tables import table
@@ -28,6 +28,7 @@ _OPTICS = """\
 Far is a chi-squared of nine degrees of freedom: of a trial's matrix, fitted beside the optics,
 being that of the other trials named."""
 _BESIDE = {
+    "optics": "after, fitted on other trials and their optics",
     "others": "after, fitted on other trials",
     "bound": "after, fitted by the optics on what is judged",
 }
@@ -43,13 +44,16 @@ def run(data: list[Path], advance: Callable[[float], None] = lambda n: None) -> 
     with TemporaryDirectory() as scratch:
         moving = {n: moving_in(t, Path(scratch) / f"{n}.parquet") for n, t in every.items()}
     found: dict = {"others": {}, "halves": {}, **_refused(list(moving.values()))}
-    found["optics"] = _by_optics(every, moving, found["refused"])
+    seen = {n: _seen(t, moving[n]) for n, t in every.items()}
+    found["optics"] = _by_optics(seen, found["refused"])
     for number, group in enumerate(GROUPS):
         own = [n for n in group if n in every]
         for name in own:
             others = [moving[n] for n in own if n != name]
             shown = by_windows(others, []) if others else None
-            found["others"][name] = _row(every[name], number, shown)
+            optics = by_windows([seen[n] for n in own if n != name], []) if others else None
+            optics_too = _row(every[name], number, optics)["after"]
+            found["others"][name] = _row(every[name], number, shown) | {"optics": optics_too}
             half = _half(every[name], moving[name], number)
             half["others"] = _row(every[name], number, shown, 0.5)["after"]
             found["halves"][name] = half
@@ -77,18 +81,21 @@ def _refused(moving: list[Moving]) -> dict[str, list]:
     return {"refused": [], "unsure": []}
 
 
-def _by_optics(every, moving, groups) -> dict[str, list[float]]:
+def _seen(trial: Trial, moving: Moving) -> Moving:
+    """The trial as the optics saw it."""
+    return replace(moving, given=in_the_axes_of(moving, trial.attitude), mounted=True)
+
+
+def _by_optics(seen: dict[str, Moving], groups) -> dict[str, list[float]]:
     """Trial -> chi-squared, of 9 degrees of freedom, of its matrix by the optics being that of the
     other trials of each group."""
-    seen = {}
-    for name, trial in every.items():
-        fitted = beside(replace(moving[name], given=trial.attitude, mounted=True), np.zeros((3, 3)))
-        seen[name] = Shown() if fitted is None else fitted.shown(np.zeros((3, 3)))
+    fitted = {name: beside(one, np.zeros((3, 3))) for name, one in seen.items()}
+    said = {n: Shown() if f is None else f.shown(np.zeros((3, 3))) for n, f in fitted.items()}
     return {
         name: [
-            distance(one, sum((seen[n] for n in group if n != name), Shown())) for group in groups
+            distance(one, sum((said[n] for n in group if n != name), Shown())) for group in groups
         ]
-        for name, one in sorted(seen.items())
+        for name, one in sorted(said.items())
     }
 
 
@@ -105,8 +112,7 @@ def _half(trial: Trial, moving: Moving, group: int) -> dict:
     at = np.flatnonzero(trial.moving)
     middle = int((at[0] + at[-1]) / 2)
     first, second = slice(middle), slice(middle, None)
-    seen = replace(moving.part(second), given=trial.attitude[second], mounted=True)
-    bound = heading_error_deg(trial, fit([seen])[0], 0.5)
+    bound = heading_error_deg(trial, fit([_seen(trial, moving).part(second)])[0], 0.5)
     return {**_row(trial, group, by_windows([moving.part(first)], []), 0.5), "bound": bound}
 
 
@@ -167,7 +173,7 @@ def in_markdown(found: dict) -> str:
         parts += [table(heads, rows), _OPTICS]
     for key, words in (("others", "other trials"), ("halves", "its first half")):
         heads = ["trial", "deployed", "before, degrees", f"after, fitted on {words}"]
-        heads += [*_BESIDE.values()] if key == "halves" else []
+        heads += [words for k, words in _BESIDE.items() if k in next(iter(found[key].values()), {})]
         rows = [
             [name, "yes" if r["found"] else "nothing"]
             + [f"{r[k]:.2f}" for k in ("before", "after", *_BESIDE) if k in r]

@@ -1,13 +1,13 @@
 """What recordings in motion show of the nine entries, and whether it holds on windows held out."""
 
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.stats import chi2
 
 from .columns import MATRIX
-from .device import LEVEL, DifferentDevices, check_one_device, device_of, groups
+from .device import LEVEL, Shown, check_one_device, device_of, groups
 from .heading import heading_lost
 from .matrix import FOLDS, beside, by_recording, fit, of_what_shows_more
 from .moving import Moving, check_axes
@@ -24,7 +24,8 @@ class RateScale:
     bool, entries
     that the motion did not show; level: of p; share: how much of the matrix is deployed; heading:
     degrees a minute lost against an attitude that was given, without and with the matrix of what
-    was left out; unused: names of recordings whose attitude shows less than gravity.
+    was left out; unused: names of recordings whose attitude shows less than gravity; by_others: of
+    several recordings without a holdout, what would be deployed by all but the one named.
     """
 
     matrix: np.ndarray
@@ -43,6 +44,7 @@ class RateScale:
     share: float = 1.0
     heading: tuple[float, float] | None = None
     unused: tuple[str, ...] = ()
+    by_others: Mapping[str, np.ndarray] = field(default_factory=dict)
 
     @property
     def found(self) -> bool:
@@ -131,16 +133,22 @@ def _left_out(shown, train, holdout) -> Iterator[tuple[Moving, np.ndarray]]:
         first, second = (train[0].part(s) for s in (slice(middle), slice(middle, None)))
         yield second, _deployed([first])
     else:
-        seen = [m for m in train if m.given is not None]
-        yield from ((one, _deployed([m for m in train if m is not one])) for one in seen)
+        yield from ((m, shown.by_others[m.name]) for m in train if m.name in shown.by_others)
 
 
 def _deployed(train: list[Moving]) -> np.ndarray:
-    try:
-        shown = _by_windows(train, [])
-    except DifferentDevices:  # all together are of one
-        return np.zeros((3, 3))
+    shown = _by_windows(train, [])
     return shown.deployed if shown is not None and shown.found else np.zeros((3, 3))
+
+
+def _by_others(statements: Mapping[str, Shown], headings: Mapping[str, np.ndarray]):
+    """Name -> (3, 3) what would be deployed by all recordings but this one, linear about the matrix
+    of all."""
+    names = statements.keys() if len(statements) > 1 else ()
+    others = {name: [n for n in names if n != name] for name in names}
+    devices = {name: device_of([statements[n] for n in rest]) for name, rest in others.items()}
+    shares = {name: d.share([headings[n] for n in others[name]]) for name, d in devices.items()}
+    return {name: (shares[name] * d.entries).reshape(3, 3) for name, d in devices.items()}
 
 
 def _by_windows(train: list[Moving], holdout: list[Moving]) -> RateScale | None:
@@ -150,7 +158,8 @@ def _by_windows(train: list[Moving], holdout: list[Moving]) -> RateScale | None:
     statements = by_recording((f, f.shown(matrix)) for f in fitted)
     check_one_device(list(statements.items()))
     device = device_of(list(statements.values()))
-    share = device.share(list({f.moving.name: f.heading for f in fitted}.values()))
+    headings = {f.moving.name: f.heading for f in fitted}
+    share = device.share(list(headings.values()))
     entries, covariance, shown = device.entries, device.covariance, device.shown
     # small sizes are the better guess; how far off it is, is not said as if they were known
     wide = device_of(list(statements.values()), large=True)
@@ -189,6 +198,7 @@ def _by_windows(train: list[Moving], holdout: list[Moving]) -> RateScale | None:
         runs=sum(len(f.rows.errors) for f in by_it),
         fastest_dps=fastest,
         unseen=unseen.reshape(3, 3),
+        by_others={} if holdout else _by_others(statements, headings),
     )
 
 

@@ -165,7 +165,7 @@ def moving_of(path: AnyPath, ticks: Ticks | None = None) -> Moving | None:
         return moving
     if reference.rates:
         return replace(moving, given=given)
-    return replace(moving, given=_in_the_axes_of(moving, given), mounted=True)
+    return replace(moving, given=in_the_axes_of(moving, given), mounted=True)
 
 
 def _offset(rate: np.ndarray, accel: np.ndarray, t_us: np.ndarray) -> np.ndarray:
@@ -184,7 +184,7 @@ def _offset(rate: np.ndarray, accel: np.ndarray, t_us: np.ndarray) -> np.ndarray
     return max(rate.mean(axis=0), np.zeros(3), key=held)
 
 
-def _in_the_axes_of(moving: Moving, given: np.ndarray) -> np.ndarray:
+def in_the_axes_of(moving: Moving, given: np.ndarray) -> np.ndarray:
     """The attitude (n, 4) turned, once, so that its body has the axes of the rates."""
     ours = integrate(np.degrees(moving.rate), moving.dt_s, IDENTITY)
     second = max(1, round(1.0 / moving.dt_s))
