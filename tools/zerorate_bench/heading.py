@@ -28,6 +28,7 @@ _OPTICS = """\
 Far is a chi-squared of nine degrees of freedom: of a trial's matrix, fitted beside the optics,
 being that of the other trials named."""
 _BESIDE = {
+    "own": "after, fitted on its first half and its optics",
     "optics": "after, fitted on other trials and their optics",
     "others": "after, fitted on other trials",
     "bound": "after, fitted by the optics on what is judged",
@@ -112,8 +113,10 @@ def _half(trial: Trial, moving: Moving, group: int) -> dict:
     at = np.flatnonzero(trial.moving)
     middle = int((at[0] + at[-1]) / 2)
     first, second = slice(middle), slice(middle, None)
-    bound = heading_error_deg(trial, fit([_seen(trial, moving).part(second)])[0], 0.5)
-    return {**_row(trial, group, by_windows([moving.part(first)], []), 0.5), "bound": bound}
+    seen = _seen(trial, moving)
+    bound = heading_error_deg(trial, fit([seen.part(second)])[0], 0.5)
+    shown, own = (_row(trial, group, by_windows([m.part(first)], []), 0.5) for m in (moving, seen))
+    return {**shown, "own": own["after"], "bound": bound}
 
 
 def heading_error_deg(trial: Trial, matrix: Array, first: float = 0.0) -> float:

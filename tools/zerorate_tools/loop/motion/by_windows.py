@@ -138,7 +138,7 @@ def _left_out(shown, train, holdout) -> Iterator[tuple[Moving, np.ndarray]]:
 
 def _deployed(train: list[Moving]) -> np.ndarray:
     shown = _by_windows(train, [])
-    return shown.deployed if shown is not None and shown.found else np.zeros((3, 3))
+    return shown.deployed if shown is not None else np.zeros((3, 3))
 
 
 def _by_others(statements: Mapping[str, Shown], headings: Mapping[str, np.ndarray]):
