@@ -29,7 +29,7 @@ def setup(
             if number is None:
                 i2c = SoftI2C(scl=scl, sda=sda, freq=freq)
             else:
-                i2c = I2C(number, scl=scl, sda=sda, freq=freq)
+                i2c = I2C(number, scl=scl, sda=sda, freq=freq)  # type: ignore[assignment]
             break
         except (TypeError, ValueError):  # the pins are another one's, or may not be named
             if number == bus:
