@@ -1,6 +1,6 @@
 """An MPU-6050 on the pins of a MicroPython board: the one place that says how it is wired."""
 
-from machine import I2C, Pin, SoftI2C
+from machine import I2C, Pin
 
 from .mpu6050 import MPU6050
 from .registers import unload
@@ -27,6 +27,8 @@ def setup(
     for number in (0, 1, None) if bus is None else (bus,):
         try:
             if number is None:
+                from machine import SoftI2C
+
                 i2c = SoftI2C(scl=scl, sda=sda, freq=freq)
             else:
                 i2c = I2C(number, scl=scl, sda=sda, freq=freq)  # type: ignore[assignment]
