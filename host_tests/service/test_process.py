@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from functools import partial
 
 import pytest
 from zerorate_tools.model import Slot, build_model, write_model
@@ -96,6 +97,7 @@ def test_the_real_process_comes_back_after_kill_9(tmp_path):
     pytest.importorskip("smbus2")
     command = [sys.executable, "-c", LIVE, str(tmp_path / "learned.bin")]
     pipe = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    pipe["preexec_fn"] = partial(signal.signal, signal.SIGHUP, signal.SIG_DFL)  # nohup ignores it
     said = []
     for ending in (signal.SIGKILL, signal.SIGHUP, signal.SIGTERM):
         process = subprocess.Popen(command, **pipe)
@@ -103,7 +105,7 @@ def test_the_real_process_comes_back_after_kill_9(tmp_path):
         while len(lines) < 400 and time.monotonic() < end:
             lines.append(json.loads(process.stdout.readline()))
         os.kill(process.pid, ending)
-        said.append(process.communicate()[1])
+        said.append(process.communicate(timeout=60)[1])
     assert lines[0]["bias_dps"] == pytest.approx(BIAS_DPS, abs=0.05)
     assert "nothing was ever stored" in said[0]
     for words in said[1:]:

@@ -1,5 +1,6 @@
 """A recording comes back as it was written, in every format, up to the ends of every range."""
 
+import gc
 import json
 import sys
 from pathlib import Path
@@ -169,6 +170,8 @@ def test_where_no_recording_can_be_written_is_said(tmp_path, name, said):
 
 @pytest.mark.skipif(sys.platform != "linux", reason="no other system has such a limit")
 def test_memory_within_a_bound_is_given_and_beyond_it_refused():
+    gc.collect()  # what tests before left is not given back meanwhile
+    pa.default_memory_pool().release_unused()
     before = resource.getrlimit(resource.RLIMIT_DATA)
     with at_most(80), at_most(40):
         bytearray(20 << 20)
