@@ -65,8 +65,8 @@ class RateScale:
     @property
     def notes(self) -> list[str]:
         """What an attitude forbids, or why it was not used, a sentence each."""
-        why = "gravity shows more of its axes than the reference given, which was left out"
-        said = [f"{name}: {why}" for name in self.unused]
+        why = "gravity shows more of the axes than the reference given, which was left out"
+        said = [f"{', '.join(self.unused)}: {why}"] if self.unused else []
         if self.heading is not None and not self.found:
             before, after = self.heading
             lost = f"heading would lose {after:.2f} degrees a minute against the attitude"

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from ...simulate.attitude import IDENTITY, integrate
 from .columns import BIAS
 from .matrix import beside
-from .moving import LEAST_DPS, W_LAST, Moving, turned_between
+from .moving import LEAST_DPS, W_LAST, Moving, seconds_seen, turned_between
 
 #: Headings are told over stretches of this length: filters with a magnetometer forget as soon.
 _STRETCH_S = 30.0
@@ -41,20 +41,15 @@ def _lost(one: Moving, matrix: NDArray) -> NDArray[np.float64]:
     assert one.given is not None, "only of an attitude"
     attitude, ours = one.given, integrate(rate, one.dt_s, IDENTITY)
     seen = np.isfinite(attitude).all(axis=1)
-    ends, second = _stretches(one, seen), round(1.0 / one.dt_s)
-    steps = [(a, a + second) for a in range(0, len(seen) - second, second)]
-    steps = [(a, b) for a, b in steps if seen[a] and seen[b]]
+    ends, steps = _stretches(one, seen), seconds_seen(attitude, one.dt_s)
     if not ends or not steps:
         return np.zeros(0)
     frame, _ = Rotation.align_vectors(
         *(turned_between(q, steps).as_rotvec() for q in (attitude, ours))
     )
     first = Rotation.from_quat(attitude[[a for a, _ in ends]][:, W_LAST])
-    left = (
-        first
-        * turned_between(attitude, ends)
-        * (frame * turned_between(ours, ends) * frame.inv()).inv()
-    )
+    theirs, turned = (turned_between(q, ends) for q in (attitude, ours))
+    left = first * theirs * (frame * turned * frame.inv()).inv()
     return np.degrees((left * first.inv()).as_rotvec()[:, 2]) / _STRETCH_S
 
 

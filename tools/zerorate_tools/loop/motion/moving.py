@@ -186,18 +186,23 @@ def _offset(rate: np.ndarray, accel: np.ndarray, t_us: np.ndarray) -> np.ndarray
 
 def in_the_axes_of(moving: Moving, given: np.ndarray) -> np.ndarray:
     """The attitude (n, 4) turned, once, so that its body has the axes of the rates."""
-    ours = integrate(np.degrees(moving.rate), moving.dt_s, IDENTITY)
-    second = max(1, round(1.0 / moving.dt_s))
-    seen = np.isfinite(given).all(axis=1)
-    ends = [(a, a + second) for a in range(0, len(seen) - second, second)]
-    ends = [(a, b) for a, b in ends if seen[a] and seen[b]]
+    ends = seconds_seen(given, moving.dt_s)
     if not ends:
         return given
-    theirs, ours = (turned_between(q, ends).as_rotvec() for q in (given, ours))
+    integrated = integrate(np.degrees(moving.rate), moving.dt_s, IDENTITY)
+    theirs, ours = (turned_between(q, ends).as_rotvec() for q in (given, integrated))
     # what no turn shows is left as it is
     faint = np.eye(3) * np.sqrt(_PLANAR * (ours**2).sum())
     turn, _ = Rotation.align_vectors(np.vstack([ours, faint]), np.vstack([theirs, faint]))
     return multiply(given, rotation(-np.degrees(turn.as_rotvec())))
+
+
+def seconds_seen(attitude: np.ndarray, dt_s: float) -> list[tuple[int, int]]:
+    """First and last sample of each second, one after the other, at both of which an attitude
+    (n, 4) was seen."""
+    seen, second = np.isfinite(attitude).all(axis=1), max(1, round(1.0 / dt_s))
+    ends = [(a, a + second) for a in range(0, len(seen) - second, second)]
+    return [(a, b) for a, b in ends if seen[a] and seen[b]]
 
 
 def turned_between(attitude: np.ndarray, ends: Sequence[tuple[int, int]]) -> Rotation:
