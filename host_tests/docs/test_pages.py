@@ -92,21 +92,6 @@ def test_every_link_of_a_page_beside_the_site_leads_to_a_file_and_a_heading(repo
                 assert heading in anchors, f"{page.name}: {link}"
 
 
-@pytest.mark.parametrize(
-    ("one", "other", "same"),
-    [
-        ("x 26.311 mdps", "x 26.4 mdps", True),
-        ("x 26.311 mdps", "x 36.4 mdps", False),
-        ("found: lag", "found: rate", False),
-        ("1,234 samples", "1,234 samples, 3 lost", False),
-        ("offset -0.31", "offset +0.31", False),
-        ("a  b\n", "a b\n", True),
-    ],
-)
-def test_output_is_the_same_but_for_rounding(one, other, same):
-    assert same_but_for_rounding(one, other) is same
-
-
 HERE = Path(__file__).parent
 
 

@@ -85,21 +85,20 @@ class CheckedExpressions(Expressions):
 
 
 class CheckedLibrary:
-    """The kernels below `package` (default: the firmware's), compiled so; ENTRIES of library.py.
+    """The firmware's kernels, compiled so; ENTRIES of library.py.
 
     flags: -O0 compiles in a sixth of the time of -O1, which runs four times as fast.
     """
 
-    def __init__(self, package=None, entries=ENTRIES, behind=None, flags=("-O0",)) -> None:
+    def __init__(self, flags=("-O0",)) -> None:
         first = len(_PLACES)
         text = kernels_in_c(
-            Kernels(package), *entries, arithmetic=_OPERATIONS, expressions=CheckedExpressions
+            Kernels(), *ENTRIES, arithmetic=_OPERATIONS, expressions=CheckedExpressions
         )
         self._places = [""] * first + _PLACES[first:]
         with tempfile.TemporaryDirectory(prefix="zerorate-checked-") as folder:
             target = Path(folder) / "checked.so"
-            own = own_text("sample.c", "rows.c") + _RUN if behind is None else behind
-            compile_library(f"{text}\n{own}", target, *flags)
+            compile_library(f"{text}\n{own_text('sample.c', 'rows.c')}{_RUN}", target, *flags)
             self.functions = ctypes.CDLL(str(target))
         self._at = ctypes.c_int32.in_dll(self.functions, "left_at")
         self._by = ctypes.c_int64.in_dll(self.functions, "left_by")
@@ -113,17 +112,13 @@ class CheckedLibrary:
             return ""
         return f"{self._places[at - 1]}: {'no end' if self._operations.value < 0 else by}"
 
-    def allow(self, operations: int) -> None:
-        """Let the next call have so many operations."""
-        self._operations.value = operations
-
     def run(self, arrays, frames, dt_us) -> str:
         """Drive arrays (of `Corrector`, None where off) with rows; what left 31 bits, or ""."""
         n = len(frames)
         bias, quality = np.empty((3, n), np.int32), np.empty((3, n), np.int32)
         source, verdict = np.empty((3, n), np.int8), np.empty(n, np.int8)
         frames, dt_us = (np.array(part, np.int32, order="C") for part in (frames, dt_us))
-        self.allow(_MOST_OPERATIONS * n)
+        self._operations.value = _MOST_OPERATIONS * n
         self.functions.checked_run(
             (ctypes.c_void_p * len(arrays))(*map(address, arrays)),
             *(address(frames), address(dt_us), ctypes.c_int64(n), address(np.zeros(1, np.int32))),

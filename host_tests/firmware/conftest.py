@@ -42,27 +42,6 @@ def trace_on(repository):
 
 
 @pytest.fixture(scope="session")
-def source_on(repository):
-    """source_on(runtime, name, samples) -> the states by a MicroPython whose heap is locked.
-
-    name: in_motion, gravity or together.
-    """
-
-    def run(runtime, name, samples):
-        result = runtime.run(
-            _HERE / "on_micropython" / "motion_without_heap.py",
-            [name, str(len(samples))],
-            modules=[repository / "firmware"],
-            files_in={"samples.bin": samples.astype("int32").tobytes()},
-            files_out=["state.bin"],
-            check=True,
-        )
-        return result.files["state.bin"]
-
-    return run
-
-
-@pytest.fixture(scope="session")
 def warm_up():
     """The simulated columns of hours, and their means by tick."""
     raw = columns()

@@ -9,7 +9,6 @@ from zerorate_tools.layout import STATE
 from zerorate_tools.replay.engines import others_of
 
 from . import trace
-from .checked import MOST, OutOf31Bits, checked
 from .checked_c import CheckedLibrary
 from .sweep import attack
 from .trace_on_host import corrector_for, frames
@@ -43,31 +42,6 @@ def test_random_sensors_and_settings_of_the_documented_ranges_leave_31_bits_alon
 @pytest.mark.parametrize("number", [520, 625, 696, 806, 1300])
 def test_what_once_left_31_bits_fits(library, number):
     assert attack(library, number) == ""
-
-
-OPERATIONS = ["a + b", "a - b", "a * b", "a << b", "a >> b", "a // b", "a % b", "-a", "~a", "a ^ b"]
-VALUES = [0, 1, -1, 2, 30, 31, 0x7FFF, 0x8000, MOST >> 1, MOST, -MOST, -MOST - 1]
-KERNELS = [f"def op_{i}(a: int, b: int) -> int:\n    return {o}" for i, o in enumerate(OPERATIONS)]
-ASKED = [f"ask_{i}(int32_t a, int32_t b) {{ ASK({i}); }}" for i in range(len(OPERATIONS))]
-ASK = "#define ASK(i) return setjmp(escape) ? 0 : tried_op_##i(a, b)"
-SHOWN = '__attribute__((visibility("default"))) int32_t '
-
-
-def test_c_that_minds_31_bits_says_what_the_checking_integer_says(tmp_path):
-    (tmp_path / "tried.py").write_text("\n\n".join(KERNELS), encoding="utf-8")
-    entries = [("tried", f"op_{i}") for i in range(len(OPERATIONS))]
-    behind = "\n".join([ASK, *(SHOWN + asked for asked in ASKED)])
-    tried = CheckedLibrary(tmp_path, entries, behind)
-    for i, operation in enumerate(OPERATIONS):
-        for a in VALUES:
-            for b in VALUES:
-                tried.allow(10)
-                result = getattr(tried.functions, f"ask_{i}")(a, b)
-                try:
-                    said = int(eval(operation, {"a": checked(a), "b": checked(b)}))
-                except OutOf31Bits:
-                    said = None
-                assert (None if tried.left() else result) == said, (operation, a, b)
 
 
 RATES_HZ = [4.0, 12.5, 100.0, 1000 / 7, 1000.0]

@@ -4,7 +4,6 @@ import json
 import re
 from array import array
 from binascii import crc32
-from collections import defaultdict
 from functools import cache
 from pathlib import Path
 
@@ -13,23 +12,19 @@ import pytest
 from zerorate import Corrector, Sensor
 from zerorate.effects import effects
 from zerorate.model import EffectModel
-from zerorate.rest import bias, guard
 from zerorate_bench.cost_report import import_heap_bytes
 from zerorate_tools.layout import (
-    AXIS,
     EFFECTS,
     PLAY,
     SLOT,
     STATE,
-    STILLNESS,
-    axis_at,
     slot_at,
 )
 
 from . import swung, trace
 from .played import IMPORT_BYTES, STATE_BYTES
 from .simulated_sources import EVERY_SLOT, every_slot_bin
-from .trace_on_host import GOLDEN, checksums, on_cpython, on_machine_code, where_it_parts
+from .trace_on_host import GOLDEN, checksums, on_machine_code, where_it_parts
 
 modes = pytest.mark.parametrize("mode", sorted(trace.MODES))
 
@@ -62,15 +57,6 @@ def test_the_numbers_are_those_that_were_committed(mode, trace_on_host):
         f"the firmware gives other numbers, {where_it_parts(mode, *trace_on_host(mode))}; "
         "if that is meant: python -m host_tests.golden"
     )
-
-
-def test_where_the_numbers_part_from_those_committed_is_said(trace_on_host):
-    state, biases = map(bytearray, trace_on_host("every"))
-    assert where_it_parts("every", state, biases).startswith("no bias differs; 0 words")
-    state[4 * STATE.OUT_Q8] ^= 1
-    biases[12 * 1234] ^= 1
-    said = where_it_parts("every", state, biases)
-    assert said.startswith("first at samples 1216 and on; 1 words of the state: OUT_Q8[0] ")
 
 
 @pytest.mark.parametrize("source", swung.SOURCES)
@@ -137,40 +123,6 @@ def test_the_effects_are_those_that_were_committed(on_host):
 def test_bytecode_gives_the_effects_that_cpython_gives(micropython, on_interpreter, on_host):
     for one, other in zip(on_interpreter(micropython), on_host):
         np.testing.assert_array_equal(one, other)
-
-
-ALWAYS = {
-    "verdict": {guard.GOOD, guard.REPEAT, guard.RAIL, guard.ALL_ZERO, guard.ALL_ONES}
-    | {guard.TEMPERATURE_JUMP, guard.TIME_STOOD_STILL, guard.TIME_LEAPT},
-    "stillness": {STILLNESS.UNKNOWN, STILLNESS.STILL, STILLNESS.MOVING}
-    | {STILLNESS.TURNING, STILLNESS.SHAKEN, STILLNESS.SHIFTED},
-    "source": {bias.NONE, bias.ANY_TEMPERATURE},
-}
-IN_MODE = {
-    "default": {"source": {bias.FIT}, "beyond": {1}, "suspected": {True}},
-    "every": {"source": {bias.FIT}, "beyond": {1}},
-    "document": {"source": {bias.FIT, bias.HERE}, "beyond": {1}},
-    "ignoring": {},
-}
-
-
-@modes
-def test_the_trace_covers_every_event_that_the_state_shows(mode):
-    """Which kernels a trace calls is told by their figures (host_tests/golden/kernels.py)."""
-    seen = defaultdict(set)
-
-    def look(corrector, verdict):
-        s, c = corrector.state, corrector.settings
-        seen["verdict"].add(verdict)
-        seen["stillness"].add(s[STATE.STILLNESS])
-        for axis in range(3):
-            seen["source"].add(s[STATE.SOURCE + axis])
-            seen["beyond"].add(s[axis_at(c, axis) + AXIS.BEYOND])
-            seen["suspected"].add(s[axis_at(c, axis) + AXIS.SUSPECT] > 0)
-
-    on_cpython(mode, look)
-    for wanted in (ALWAYS, IN_MODE[mode]):
-        assert {name: of - seen[name] for name, of in wanted.items() if of - seen[name]} == {}
 
 
 def test_the_state_of_three_axes_stays_within_its_limit(capsys):

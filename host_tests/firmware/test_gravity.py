@@ -116,16 +116,3 @@ def test_a_threshold_that_no_interval_can_pass_is_refused():
 def test_a_coarse_gyroscope_at_a_low_rate_is_refused():
     with pytest.raises(ValueError, match="needs 12.1"):
         gravity_settings(odr_hz=4.0, gyro_lsb_per_dps=1.0)  # 2^30.2 in a sample at the rail
-
-
-@pytest.fixture(scope="module")
-def short_motion():
-    return motions.turning(80, 3.0, [1.0, 0.0, 0.0], hz=25.0, start=LEANING)
-
-
-def test_bytecode_counts_what_cpython_counts_and_allocates_nothing(
-    micropython, source_on, short_motion
-):
-    expected = Counter(hz=25.0).feed(short_motion)
-    assert expected.learned
-    assert source_on(micropython, "gravity", short_motion.samples) == expected.state.tobytes()

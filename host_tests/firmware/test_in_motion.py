@@ -228,21 +228,3 @@ def test_numbers_in_two_words_keep_25_bits(kernel, exact, a, b):
     kernel(state, 4, 0, 2)
     largest = max(abs(a), abs(b)) if kernel in (real.add, real.subtract) else abs(exact(a, b))
     assert abs(value_at(state, 4) - exact(a, b)) <= largest / (1 << 25)
-
-
-@pytest.fixture(scope="module")
-def short_motion():
-    return motions.swinging(7, 44, hz=25.0)
-
-
-@pytest.fixture(scope="module")
-def expected(short_motion):
-    learner = Learner(hz=25.0, longest_stage=8).feed(short_motion)
-    assert learner.learned
-    return learner.state.tobytes()
-
-
-def test_bytecode_learns_what_cpython_learns_and_allocates_nothing(
-    micropython, source_on, short_motion, expected
-):
-    assert source_on(micropython, "in_motion", short_motion.samples) == expected

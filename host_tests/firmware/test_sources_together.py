@@ -2,6 +2,7 @@
 
 import sys
 from array import array
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -62,9 +63,17 @@ def expected(samples):
 
 
 def test_every_interpreter_decides_the_same_and_allocates_nothing(
-    micropython, source_on, samples, expected
+    micropython, repository, samples, expected
 ):
-    assert source_on(micropython, "together", samples) == expected
+    result = micropython.run(
+        Path(__file__).parent / "on_micropython" / "motion_without_heap.py",
+        [str(len(samples))],
+        modules=[repository / "firmware"],
+        files_in={"samples.bin": samples.astype("int32").tobytes()},
+        files_out=["state.bin"],
+        check=True,
+    )
+    assert result.files["state.bin"] == expected
 
 
 def test_the_kernels_that_are_compiled_decide_the_same(samples, expected):

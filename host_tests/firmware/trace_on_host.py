@@ -31,14 +31,14 @@ def frames(updates):
     return rows, dt_us
 
 
-def on_cpython(mode, watch=lambda corrector, verdict: None):
-    """(final state, bias of every sample), bytes; watch: called after each update."""
+def on_cpython(mode):
+    """(final state, bias of every sample), bytes."""
     corrector = corrector_for(mode)
     frame, generator = array("i", [0] * 7), array("i", trace.GENERATOR)
     biases = array("i")
     for n in range(trace.UPDATES[mode]):
         dt_us = trace.fill(frame, n, generator)
-        watch(corrector, corrector.update(frame, dt_us))
+        corrector.update(frame, dt_us)
         biases.extend(corrector.state[STATE.OUT_Q8 : STATE.OUT_Q8 + 3])
     return corrector.state.tobytes(), biases.tobytes()
 

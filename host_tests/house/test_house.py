@@ -9,7 +9,6 @@ import pytest
 from packaging.requirements import Requirement
 from vulture import Vulture
 
-from ..mutant_trials import ends
 from ..mutants import AREAS, apart, area_of, files_of
 from .readability import LEAST_READING_EASE, MOST_WORDS_A_SENTENCE, pages, readability
 
@@ -188,23 +187,6 @@ def test_every_file_belongs_to_one_area_or_says_why_it_has_no_mutants(repository
 def test_an_area_has_files_and_its_tests_are_there(repository, area):
     tests = [repository / "host_tests" / test.partition("::")[0] for test in AREAS[area][1]]
     assert files_of(area) and [str(test) for test in tests if not test.exists()] == []
-
-
-def test_mutants_of_functions_and_of_modules_are_told_from_those_that_live(tmp_path, monkeypatch):
-    source = "LIMIT = 3\n\n\ndef below(n):\n    return n < LIMIT\n"
-    (tmp_path / "limits.py").write_text(source)
-    (tmp_path / "test_it.py").write_text(
-        "from limits import below\n\ndef test_it():\n    assert below(1) and not below(4)\n"
-    )
-    monkeypatch.syspath_prepend(tmp_path)
-    changes = [("<", "<=", 5), ("<", ">", 5), ("3", "2", 1), ("3", "0", 1), ("3", "3 // 0", 1)]
-    drawn = {
-        number: (str(tmp_path / "limits.py"), row, source.replace(before, after))
-        for number, (before, after, row) in enumerate(changes)
-    }
-    found = ends([str(tmp_path)], drawn)
-    lived = ["passed", "killed", "passed", "killed", "untried"]
-    assert [found[number] for number in range(5)] == lived
 
 
 def pins(path):
