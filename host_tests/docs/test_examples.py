@@ -317,14 +317,6 @@ def test_an_error_is_a_line_with_the_file(ran):
     assert len(ran[0][-1].splitlines()) == 1
 
 
-def test_physical_columns_are_the_raw_ones_in_units(ran):
-    recording, frame = ran[1]["recording"], ran[1]["frame"]
-    raw = recording.to_frame()
-    assert frame["gx_dps"].to_numpy() * 131.0 == pytest.approx(raw["gx"].to_numpy())
-    assert frame.index.name == "t_s" and frame.index[0] == 0
-    assert "vdd_mv" in frame
-
-
 def test_a_recording_without_temperature_has_a_plot_of_one_panel():
     columns = {name: np.arange(500, dtype=np.int32) % 3 for name in ("gx", "gy", "gz")}
     columns["t_us"] = np.arange(500, dtype=np.int64) * 10_000

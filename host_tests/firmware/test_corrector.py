@@ -8,13 +8,9 @@ from zerorate.gravity.gravity_settings import gravity_settings
 from zerorate.motion.motion_settings import motion_settings
 from zerorate.settings import DEFAULTS
 from zerorate.storage.codes import EMPTY, LOADED, OTHER_BINDING, OUT_OF_RANGE, UNREADABLE
-from zerorate.storage.soundness import is_sound
 from zerorate.storage.store import _PIECE, Store
 from zerorate_fakes.memory import FakeMemory
 from zerorate_tools.layout import AXIS, MOTION, STATE, axis_at
-
-from . import trace
-from .trace_on_host import corrector_for
 
 RATES = (800, -300, 40)
 PERIOD_US = 10000
@@ -122,17 +118,6 @@ def test_a_state_that_cannot_be_starts_afresh_and_says_so(learned, name, word):
     assert list(again.state) == list(Corrector().state)
     rest(again, 1000)
     assert again.learned
-
-
-@pytest.mark.parametrize("mode", sorted(trace.MODES))
-def test_no_state_that_was_ever_learned_is_taken_for_one_that_cannot_be(mode):
-    corrector = corrector_for(mode)
-    assert is_sound(corrector.state, corrector.settings)
-    frame, generator = array("i", [0] * 7), array("i", trace.GENERATOR)
-    for n in range(min(trace.UPDATES[mode], 6000)):
-        corrector.update(frame, trace.fill(frame, n, generator))
-        if n % 97 == 0:
-            assert is_sound(corrector.state, corrector.settings), n
 
 
 @pytest.mark.parametrize(

@@ -5,10 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
-from zerorate.arithmetic import atan2, real
 from zerorate.gravity.gravity_settings import gravity_settings, gravity_state
 from zerorate.motion import attitude, in_motion
 from zerorate.motion.motion_settings import motion_settings, motion_state
@@ -16,11 +13,10 @@ from zerorate_tools.layout import MOTION, MOTION_REASON
 from zerorate_tools.simulate import simulate
 
 from . import motions
-from .motions import stored, value_at
 
 BIAS, SIGMA = MOTION.MOTION_BIAS_Q8, MOTION.MOTION_QUALITY_Q8
 REASON, REFUSED = MOTION.MOTION_REASON, MOTION.REFUSED
-SLOPES, HALF, Q = MOTION.NOTED_SLOPES_Q8, MOTION.HALF, MOTION.Q
+HALF, Q = MOTION.HALF, MOTION.Q
 
 
 class Learner(motions.Fed):
@@ -199,32 +195,3 @@ def test_a_window_integrates_like_a_float64_quaternion(most_rad, limit_deg):
         errors.append(integrated_error_deg(steps))
     print(f"128 increments within {most_rad} rad: worst {max(errors):.4f} deg")
     assert 0 < max(errors) < limit_deg
-
-
-@given(st.integers(-(1 << 29), 1 << 29), st.integers(-(1 << 29), 1 << 29))
-def test_the_angle_of_a_vector_is_right_to_two_units(y, x):
-    if abs(x) + abs(y) > 100:
-        assert abs(atan2.atan2_q13(y, x) - 8192 * np.arctan2(y, x)) < 2 + 8192 / 100
-
-
-numbers = st.floats(1e-20, 1e20) | st.floats(-1e20, -1e-20)
-
-
-@pytest.mark.parametrize(
-    ("kernel", "exact"),
-    [
-        (real.multiply, lambda a, b: a * b),
-        (real.divide, lambda a, b: a / b),
-        (real.add, lambda a, b: a + b),
-        (real.subtract, lambda a, b: a - b),
-    ],
-    ids=["multiply", "divide", "add", "subtract"],
-)
-@given(a=numbers, b=numbers)
-def test_numbers_in_two_words_keep_25_bits(kernel, exact, a, b):
-    state = array("i", [0] * 6)
-    stored(state, 0, a)
-    stored(state, 2, b)
-    kernel(state, 4, 0, 2)
-    largest = max(abs(a), abs(b)) if kernel in (real.add, real.subtract) else abs(exact(a, b))
-    assert abs(value_at(state, 4) - exact(a, b)) <= largest / (1 << 25)

@@ -228,14 +228,6 @@ class TestSavingAtRest:
             assert schedule.offer(OLD, [0, -10 * number, 0], 3600 * number)
         assert (schedule.longest_us, schedule.saves) == (900, 3)
 
-    def test_what_saving_costs_is_told(self, schedule, corrector):
-        assert "Nothing was saved yet" in corrector.explain()
-        corrector.state[layout.STATE.STILLNESS] = layout.STILLNESS.STILL
-        schedule.offer(OLD, [0, -10, 0], 0)
-        schedule.longest_us = 97_400
-        told = "Saved 1 times, for 97 ms at the longest: 10 samples pass, which a FIFO keeps"
-        assert told in corrector.explain()
-
 
 class TestSchedule:
     @pytest.fixture

@@ -82,11 +82,6 @@ def test_eight_readings_at_rest_are_learned_where_they_agree_with_what_is_known(
     assert estimators(corrector) != before
 
 
-def test_motion_alone_without_a_rest_is_not_learned():
-    corrector, _ = play(handled(60, 1), **RESTS_ALONE)
-    assert not corrector.learned
-
-
 def test_a_turn_about_the_vertical_is_learned_once_it_insists():
     corrector, _ = play(turning(0, 30, axis=2))
     assert corrector.bias_lsb(2) == pytest.approx(0.2 * LSB, abs=LEARNED_LSB)

@@ -41,24 +41,6 @@ def memory_of_two(memory):
     return memory
 
 
-def test_plain_bytes_are_stored_as_they_are(memory):
-    store = Store(memory, BINDING, 5)
-    assert store.save(b"\x00\xff\x80\x01\x7f")
-    payload = bytearray(5)
-    for reader in (store, Store(memory, BINDING, 5)):
-        assert reader.load(payload) == codes.LOADED
-        assert payload == b"\x00\xff\x80\x01\x7f"
-    assert set(memory.bytes[store.slot_bytes :]) == {0xFF}
-
-
-def test_nothing_is_written_outside_the_two_slots(memory):
-    store = make_store(memory, base=100)
-    for _ in range(4):
-        store.save(NEW)
-    assert set(memory.bytes[:100]) == {0xFF}
-    assert set(memory.bytes[100 + 2 * store.slot_bytes :]) == {0xFF}
-
-
 @pytest.mark.parametrize(
     ("kind", "torn_byte"),
     [(FakeMemory, torn) for torn in (None, 0x00, 0xFF, 0x5A)] + [(FakeMemoryInPieces, None)],
@@ -116,14 +98,6 @@ def test_a_bit_turned_under_a_living_store_and_then_a_cut_cost_one_of_the_slots(
         # what was written of the header may have mended the newest
         assert payload == NEW or (payload == OLD and bit >= 8 * store.slot_bytes), bit
         memory_of_two.cut_after, memory_of_two.bytes[:] = None, image
-
-
-@given(noise=st.binary(min_size=200, max_size=200))
-def test_noise_is_never_loaded_and_never_raises(noise):
-    memory = FakeMemory(4096)
-    memory.bytes[:200] = noise
-    reason, payload = loaded(memory)
-    assert reason != codes.LOADED and payload == BLANK
 
 
 def test_a_storage_that_fails_is_a_reason_and_not_an_exception(memory_of_two):

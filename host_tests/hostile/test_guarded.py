@@ -7,8 +7,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-import pyarrow as pa
-import pyarrow.parquet as pq
 import pytest
 from zerorate_tools import cli
 from zerorate_tools.bounds import MEMORY_MB
@@ -67,15 +65,6 @@ def test_any_footer_is_one_line(tmp_path, footer):
         with pytest.raises(BadRecording, match="x.parquet: ") as refused:
             reads(tmp_path / "x.parquet")
         assert "\n" not in str(refused.value)
-
-
-def test_a_column_that_is_there_twice_is_named(tmp_path):
-    table = pa.table([pa.array([1, 2])] * 3, names=["t_us", "gx_dps", "gx_dps"])
-    pq.write_table(table, tmp_path / "x.parquet")
-    with pytest.raises(BadRecording, match="gx_dps comes twice"):
-        read_recording(tmp_path / "x.parquet")
-    with pytest.raises(BadRecording, match="the column 'gx_dps' is there twice"):
-        read_foreign(tmp_path / "x.parquet")
 
 
 def test_limits_that_a_user_set_lower_stop_no_reader(log):

@@ -1,7 +1,6 @@
 """`zerorate run` as a process of its own: what it prints first, and how it comes back."""
 
 import configparser
-import fcntl
 import json
 import os
 import re
@@ -71,14 +70,6 @@ def test_what_it_cannot_run_with_is_one_line_and_stays_as_it_is(tmp_path, words,
     line, complaint = first_line(tmp_path, *options, bus=bus)
     assert line is None and re.match(said, complaint) and complaint.count("\n") == 1
     assert (tmp_path / "mine.csv").read_text() == "t_us,gx,gy,gz\n0,1,2,3\n"
-
-
-def test_a_state_file_is_of_one_service_at_a_time(tmp_path):
-    with (tmp_path / "learned.bin").open("ab") as held:
-        fcntl.flock(held, fcntl.LOCK_EX)
-        line, said = first_line(tmp_path)
-    assert line is None and said.startswith("zerorate: learned.bin: another service keeps")
-    assert first_line(tmp_path)[0] is not None  # once it is free
 
 
 LIVE = """

@@ -9,7 +9,7 @@ import threading
 import time
 
 import pytest
-from zerorate_tools import cli, closing
+from zerorate_tools import closing
 from zerorate_tools.ending import noted_signals, undisturbed
 from zerorate_tools.errors import InFile
 from zerorate_tools.recordings import write_recording
@@ -174,21 +174,6 @@ def test_in_another_thread_nothing_is_noted(handled):
     thread.start()
     thread.join()
     assert seen == [[]] and handled == [signal.SIGTERM]
-
-
-@pytest.mark.skipif(not hasattr(os, "fork"), reason="processes do not fork there")
-@pytest.mark.parametrize("ignored", [True, False])
-def test_the_program_ends_by_a_hang_up_unless_nohup_ignores_it(ignored, monkeypatch):
-    monkeypatch.setattr("sys.argv", ["zerorate", "--version"])
-    if (child := os.fork()) == 0:
-        signal.signal(signal.SIGHUP, signal.SIG_IGN if ignored else signal.SIG_DFL)
-        try:
-            cli.main()
-        except SystemExit:
-            signal.raise_signal(signal.SIGHUP)
-        os._exit(0)
-    status = os.waitpid(child, 0)[1]
-    assert os.WIFEXITED(status) if ignored else os.WTERMSIG(status) == signal.SIGHUP, status
 
 
 if sys.platform == "win32":

@@ -11,10 +11,8 @@ import numpy as np
 import pandas as pd
 import pytest
 import zerorate_tools
-from zerorate_tools import cli, installed, runtimes
+from zerorate_tools import cli, installed
 from zerorate_tools.cli import main
-from zerorate_tools.commands.demo import get_ready
-from zerorate_tools.errors import MissingRuntime
 from zerorate_tools.installed import adding
 from zerorate_tools.recordings import Scales, recording_writer
 from zerorate_tools.simulate import simulate_to_files
@@ -44,15 +42,6 @@ def test_help_imports_nothing_that_a_command_needs():
     )
     ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert ran.returncode == 0, ran.stderr
-
-
-def test_bad_input_ends_in_one_line_and_2(tmp_path, capsys):
-    (tmp_path / "in.csv").write_text("t_s,gx_dps,gy_dps,gz_dps\n")
-    assert main(["import", f"{tmp_path}/in.csv", "--out", f"{tmp_path}/out.parquet"]) == 2
-    said = capsys.readouterr().err
-    assert said.startswith("zerorate: ") and said.count("\n") == 1
-    assert "in.csv" in said and "no data row" in said
-    assert [p.name for p in tmp_path.iterdir()] == ["in.csv"]
 
 
 @pytest.mark.skipif(not os.path.isdir("/proc"), reason="a folder that even root cannot write")
@@ -238,12 +227,3 @@ def test_json_of_an_import_has_a_recording_for_each_source(tmp_path, capsys):
     assert main(["import", source, "--out", out, "--json"]) == 0
     [one] = json.loads(capsys.readouterr().out)["recordings"]
     assert one["file"] == out and one["rows_written"] == 50
-
-
-def test_the_demo_says_that_it_fetches_before_it_does(monkeypatch, capsys):
-    def fetched(name):
-        assert f"fetching MicroPython ({name}), once" in capsys.readouterr().err
-
-    monkeypatch.setattr(runtimes, "find", Mock(side_effect=MissingRuntime("none")))
-    monkeypatch.setattr(runtimes, "fetch", fetched)
-    get_ready("wasm")

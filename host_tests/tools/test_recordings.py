@@ -145,18 +145,6 @@ def test_no_other_thread_calls_python_while_a_text_is_read():
     assert set(threads) == {main_thread()}
 
 
-@pytest.mark.parametrize("file_name", FORMATS)
-def test_a_failed_write_leaves_the_older_file_alone(tmp_path, file_name):
-    write_recording(a_recording(), tmp_path / file_name)
-    with (
-        pytest.raises(KeyError),
-        recording_writer(tmp_path / file_name, list(a_recording().columns), SCALES) as writer,
-    ):
-        writer.append({"t_us": np.arange(1)})
-    assert len(read_recording(tmp_path / file_name)) == 10
-    assert not list(tmp_path.glob(".*"))
-
-
 @pytest.mark.parametrize(("name", "said"), [
     ("run.xlsx", "no format goes by this name; end the name in .parquet"),
     ("none/run.csv", "there is no folder .*none; make it first"),
