@@ -75,7 +75,7 @@ AREAS = {
         ["firmware/zerorate/rest/"],
         ["firmware/test_" + name for name in (
             "guard.py", "estimators.py", "fit.py", "histogram.py", "bursts.py",
-            "published.py", "stillness.py")]
+            "turn_on.py", "stillness.py")]
         + [KNOWN, GOLDEN, _FIGURES + "[kernels of rest]"],
     ),
     "motion": (
@@ -99,7 +99,7 @@ AREAS = {
     "corrector": (
         ["firmware/zerorate/"],
         ["firmware/test_" + name for name in (
-            "corrector.py", "checked.py", "bursts.py", "published.py", "documents.py",
+            "corrector.py", "checked.py", "bursts.py", "documents.py",
             "sources_together.py", "estimators.py", "turn_on.py",
             "machine_code_by_hand.py", "guard.py")]
         + [KNOWN, GOLDEN, _FIGURES + "[settings]", _FIGURES + "[watched]"]
@@ -135,7 +135,7 @@ AREAS = {
     "model": (
         [_TOOLS + "model/"],
         ["tools/test_model" + name for name in (
-            ".py", "_known.py", "_on_device.py")]
+            ".py", "_on_device.py")]
         + ["loop/test_basis.py", "tools/test_host.py"],
     ),
     "read": (

@@ -10,7 +10,7 @@ import sys
 from pathlib import PurePosixPath
 
 import pytest
-from zerorate_bench.boards.table import needs_of, page
+from zerorate_bench.boards.table import page
 from zerorate_bench.native.manifests import FOLDERS, manifests
 from zerorate_tools.boards.compiling import board_files, mpy_version
 from zerorate_tools.boards.connection import BoardFacts
@@ -19,7 +19,6 @@ from zerorate_tools.boards.parts import (
     REST,
     UnknownPart,
     chosen_parts,
-    heap_needed,
     part_files,
 )
 from zerorate_tools.boards.short_names import short_names, shortened
@@ -117,18 +116,6 @@ class TestFreezing:
     def test_those_of_the_packages_go_together_as_well(self, freeze, repository):
         both = [repository / folder / "manifest.py" for folder in FOLDERS.values()]
         assert freeze(both) >= names(["all"])
-
-
-def test_the_page_of_boards_prints_the_bytes_that_were_measured(monkeypatch):
-    heap = {"rest": 100, "all": 170, "motion": 150, "gravity": 130, "effects": 140}
-    kept = needs_of({"heap_bytes": heap, "least_heap_bytes": 200, "cycles": {}})
-    monkeypatch.setattr("zerorate_tools.boards.parts.needs", lambda: kept)
-    for parts, bytes_ in (
-        (["rest"], 100),
-        (["rest", "gravity"], 130),
-        (["rest", "motion", "gravity"], 170),
-    ):
-        assert heap_needed(parts, "thumb") == bytes_
 
 
 def test_the_page_of_boards_is_what_the_bench_writes_of_the_needs_kept(repository):

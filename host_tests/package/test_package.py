@@ -1,6 +1,7 @@
-"""The wheel and the sdist: what they carry, and that they work where no checkout is."""
+"""The wheel and the sdist: what they carry, that they work where no checkout is, their URLs."""
 
 import importlib.util
+import json
 import os
 import re
 import shutil
@@ -237,3 +238,70 @@ def test_a_release_runs_what_ci_runs_and_checks_what_it_uploads(repository):
     assert ".ci/run" in commands["test"] and jobs["build"]["needs"] == "test"
     assert any("twine check --strict" in command for command in commands["build"])
     assert jobs["publish"]["needs"] == "build"
+
+
+HTTPS = "https://forge.example/team/zerorate"
+NEEDED = ("pyproject.toml", "project_urls.py", "README.md", "LICENSE", "CHANGELOG.md")
+VERSION = "tools/zerorate_tools/__init__.py"
+
+
+def hatchling(folder, *words):
+    command = [sys.executable, "-m", "hatchling", *words]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def urls(folder):
+    """What the metadata of a wheel built here would name, {} for nothing."""
+    return json.loads(hatchling(folder, "metadata")).get("urls", {})
+
+
+@pytest.fixture
+def cloned(repository, tmp_path):
+    """cloned(remote) -> a checkout whose origin is that."""
+
+    def make(remote):
+        folder = tmp_path / "checkout"
+        (folder / VERSION).parent.mkdir(parents=True)
+        for name in (*NEEDED, VERSION):
+            shutil.copy(repository / name, folder / name)
+        for words in (["init", "-q"], ["remote", "add", "origin", remote]):
+            subprocess.run(["git", *words], cwd=folder, check=True)
+        return folder
+
+    return make
+
+
+@pytest.mark.parametrize(
+    "remote",
+    [
+        HTTPS,
+        HTTPS + ".git",
+        HTTPS + "/",
+        "https://somebody:secret@forge.example/team/zerorate.git",
+        "git@forge.example:team/zerorate.git",
+        "ssh://git@forge.example:2222/team/zerorate.git",
+    ],
+)
+def test_urls_are_of_the_origin_and_tell_no_password(cloned, remote):
+    shown = urls(cloned(remote))
+    assert shown["Homepage"] == HTTPS and shown["Issues"] == f"{HTTPS}/issues"
+    assert all(url.startswith(HTTPS) for url in shown.values())
+    assert {"Changelog", "Documentation"} <= set(shown)
+
+
+@pytest.mark.parametrize(
+    "remote", ["/home/me/zerorate", "../zerorate", "file:///srv/zerorate", "https://localhost/x"]
+)
+def test_a_place_that_nobody_else_reaches_gives_none(cloned, remote):
+    assert urls(cloned(remote)) == {}
+
+
+def test_an_sdist_keeps_the_urls_for_the_wheel_built_from_it(cloned, tmp_path):
+    checkout = cloned(HTTPS)
+    hatchling(checkout, "build", "-t", "sdist", "-d", str(tmp_path))
+    (sdist,) = tmp_path.glob("*.tar.gz")
+    shutil.unpack_archive(sdist, tmp_path / "unpacked")
+    (unpacked,) = (tmp_path / "unpacked").iterdir()
+    assert urls(unpacked) == urls(checkout) != {}

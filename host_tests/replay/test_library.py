@@ -142,15 +142,6 @@ def by_name(path, **options):
     return {word.name: word for word in words_of_file(path, options)}
 
 
-@pytest.mark.parametrize("options", [{}, {"motion": False}, {"gravity": False}, {"document": True}])
-def test_every_word_of_a_state_has_a_name_of_its_own(tmp_path, options):
-    (tmp_path / "s.bin").write_bytes(state_bytes(Corrector(**options)))
-    given = {"document": True} if "document" in options else {}
-    words = words_of_file(tmp_path / "s.bin", given)
-    names = [(word.array, word.name) for word in words]
-    assert len(words) == len(state_bytes(Corrector(**options))) // 4 == len(set(names))
-
-
 def test_words_are_shown_in_their_units_and_codes_by_name():
     words = [
         Word("state", 4, "FRAME[0]", 3, "LSB"),
