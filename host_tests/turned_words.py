@@ -28,6 +28,8 @@ from zerorate_tools.replay.engines import engine
 from zerorate_tools.replay.samples import Frames
 from zerorate_tools.runtimes import NAMES, find
 
+from .tools.killed_writers import in_fork
+
 WRONG_MDPS = 10.0
 ROUNDS = 8
 _LSB_PER_DPS = 131.0
@@ -95,28 +97,6 @@ def values(word, count, draw):
     return [max(-_END, min(_END - 1, draw.choice(turned))) for _ in range(count)]
 
 
-def in_a_child(function):
-    """(what the function returned, 0), or (None, the signal or -1 for an exception)."""
-    reader, writer = os.pipe()
-    child = os.fork()
-    if not child:
-        os.close(reader)
-        try:
-            with open(writer, "w") as file:
-                json.dump(function(), file)
-            os._exit(0)
-        except BaseException as error:
-            print(repr(error), file=sys.stderr, flush=True)
-            os._exit(1)
-    os.close(writer)
-    with open(reader) as file:
-        answer = file.read()
-    status = os.waitpid(child, 0)[1]
-    if status:
-        return None, status & 0x7F or -1
-    return json.loads(answer), 0
-
-
 def turnings(state, settings, count, seed, only=None):
     """(word, its new value) of every turned state."""
     words = range(settings[SETTINGS.AXES], len(state)) if only is None else only
@@ -151,17 +131,17 @@ def attack(options, count, seed, only=None):
     for at, value in turnings(state, settings, count, seed, only):
         turned = array("i", state)
         turned[at] = value
-        answer, fell = in_a_child(lambda turned=turned: outcome(turned))
+        status, answer = in_fork(Path(), lambda turned=turned: outcome(turned))
         reason, off_mdps = answer or (None, 0.0)
         kind = "loaded" if reason == LOADED else "afresh"
-        if fell:
-            kind = "signals" if fell > 0 else "exceptions"
+        if status:
+            kind = "signals" if os.WIFSIGNALED(status) else "exceptions"
         elif off_mdps > usual_mdps + WRONG_MDPS:
             kind = "wrong"
         tally[kind] += 1
         if kind not in ("loaded", "afresh"):
             name = named_state(settings)[at][0]
-            off = "" if fell else f", {off_mdps:.0f} mdps where {usual_mdps:.1f} are usual"
+            off = "" if status else f", {off_mdps:.0f} mdps where {usual_mdps:.1f} are usual"
             lines.append(f"{kind}: {name}, {state[at]} became {value}{off}")
             print(lines[-1], flush=True)
     return tally, lines

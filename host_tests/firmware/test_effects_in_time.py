@@ -20,9 +20,8 @@ from .simulated_sources import (
     columns,
     loaded,
     on_firmware,
-    tick_means,
 )
-from .test_effects import BASES, CENTRES, TENTH_OF_THE_FLOOR_DPS, term_over
+from .test_effects import TENTH_OF_THE_FLOOR_DPS
 
 PLAYS = [
     Slot(Term("temp", 5.0, 45.0, 25.0, power, memory="play", width=width), coefficients)
@@ -46,23 +45,6 @@ def test_play_operators_and_their_squares_are_those_of_the_reference(warm_up):
     assert np.abs(got - wanted[:-1]).max() < TENTH_OF_THE_FLOOR_DPS
     model.power_on()
     assert (on_firmware(model, raw)[A_TICK - 1 :: A_TICK][1:] == got).all()
-
-
-def test_a_scale_error_is_of_the_very_sample(warm_up):
-    raw = {name: values[:400] for name, values in warm_up[0].items()}
-    slots = [
-        Slot(Term("rate_x", -200.0, 200.0), (0.02, 0.005, 0.0)),
-        Slot(
-            Term("rate_x", -200.0, 200.0, second="temp", second_lo=0.0, second_hi=60.0),
-            (0.001, 0, 0),
-        ),
-    ]
-    got = on_firmware(loaded(slots), raw)
-    rate, tick = raw["gx"] / 131, tick_means(warm_up[0])("temp")
-    held = np.repeat(tick, A_TICK)[: 400 - A_TICK]
-    wanted = 0.02 * rate[A_TICK:] + 0.001 * rate[A_TICK:] * held
-    assert np.abs(got[A_TICK:, 0] - wanted).max() < 1e-4
-    assert np.abs(got[:, 1] - 0.005 * rate).max() < 5e-5
 
 
 def radio(n=400):
@@ -101,20 +83,6 @@ def test_a_model_of_before_follows_its_channel_once_a_tick():
     # a tick's mean is used in the tick behind it
     wanted = 0.001 * by_tick.mean(axis=1)[:-1]
     assert np.abs(got[A_TICK - 1 :: A_TICK, 0][1:] - wanted).max() < 5e-5
-
-
-def test_slots_of_all_kinds_add_up(warm_up):
-    raw, sources = warm_up
-    terms = [
-        term_over("temp", BASES[n], *CENTRES["temp"])
-        for n in ("square", "rate", "longest lag", "backlash", "peak", "decay", "short delay")
-    ]
-    slots = [Slot(t, (0.3 / np.abs(evaluate(t, sources, 1.0)).max(), 0.0, 0.0)) for t in terms]
-    got = on_firmware(loaded(slots), raw)[A_TICK - 1 :: A_TICK, 0]
-    wanted = sum(s.coefficient_dps[0] * evaluate(s.term, sources, 1.0) for s in slots)
-    # twice seven slots fit in the two samples of a tick, so that a gap can be made up for
-    assert [loaded(some).e[EFFECTS.SLOTS_A_SAMPLE] for some in (slots, [])] == [8, 0]
-    assert np.abs(got[2:] - wanted[1:-1]).max() < TENTH_OF_THE_FLOOR_DPS
 
 
 def test_no_sample_computes_more_than_its_share(warm_up, monkeypatch):
