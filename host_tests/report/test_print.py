@@ -53,7 +53,6 @@ TITLES = (
     "Allan deviation",
     "Thermal hysteresis: the curve and its data",
     "Which temperatures the firmware remembers",
-    "Inside the estimators",
 )
 
 
