@@ -129,8 +129,7 @@ AREAS = {
     "tools": (
         [_TOOLS],
         ["tools/test_words_reach.py", "tools/test_host.py", "tools/test_tools_by_hand.py",
-         "tools/test_atomic.py", "tools/test_cli.py", _FIGURES + "[moved together]",
-         "tools/test_recordings.py::test_memory_within_a_bound_is_given_and_beyond_it_refused"],
+         "tools/test_atomic.py", "tools/test_cli.py", _FIGURES + "[moved together]"],
     ),
     "model": (
         [_TOOLS + "model/"],

@@ -1,6 +1,5 @@
 """A recording comes back as it was written, in every format, up to the ends of every range."""
 
-import gc
 import json
 import sys
 from pathlib import Path
@@ -12,7 +11,6 @@ import pyarrow.parquet as pq
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from zerorate_tools.bounds import at_most, each_at_most
 from zerorate_tools.errors import BadRecording
 from zerorate_tools.recordings import (
     Scales,
@@ -28,7 +26,7 @@ from zerorate_tools.recordings.scales import example_for, scales_from_text
 from zerorate_tools.recordings.text import rows_of
 
 if sys.platform == "linux":
-    import resource
+    pass
 
 SCALES = Scales("MPU-6050", 25.0, 131.0, 16384.0, 340.0, 36.53, {"latitude_deg": 48.1})
 FORMATS = ["run.parquet", "run.csv", "run.csv.gz"]
@@ -154,29 +152,6 @@ def test_where_no_recording_can_be_written_is_said(tmp_path, name, said):
     (tmp_path / "folder.csv").mkdir()
     with pytest.raises(BadRecording, match=said):
         write_recording(a_recording(), tmp_path / name)
-
-
-@pytest.mark.skipif(sys.platform != "linux", reason="no other system has such a limit")
-def test_memory_within_a_bound_is_given_and_beyond_it_refused():
-    gc.collect()  # what tests before left is not given back meanwhile
-    pa.default_memory_pool().release_unused()
-    before = resource.getrlimit(resource.RLIMIT_DATA)
-    with at_most(80), at_most(40):
-        bytearray(20 << 20)
-        with pytest.raises(MemoryError):  # far beyond: tests before leave memory to be used again
-            bytearray(600 << 20)
-        with at_most(2000), pytest.raises(MemoryError):
-            bytearray(1000 << 20)
-    assert resource.getrlimit(resource.RLIMIT_DATA) == before
-    taken = int(Path("/proc/self/statm").read_text().split()[5]) * resource.getpagesize()
-    with at_most(100):
-        bound, _ = resource.getrlimit(resource.RLIMIT_DATA)
-    assert abs(bound - taken - (100 << 20)) < 8 << 20
-    sizes = each_at_most(iter(map(bytearray, (20 << 20, 600 << 20))), 40)
-    assert len(next(sizes)) == 20 << 20
-    bytearray(600 << 20)  # what takes the item is not bound
-    with pytest.raises(MemoryError):
-        next(sizes)
 
 
 HEADER = "t_us,gx,gy,gz"

@@ -1,4 +1,4 @@
-"""Bounds on what is read: small files, the memory of a step, and a child with limits of its own.
+"""Bounds on what is read: small files, and a child with limits of its own.
 
 What a file says of itself bounds nothing. A child runs no code from the folder one stands in.
 """
@@ -7,18 +7,12 @@ import os
 import signal
 import stat
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from os import PathLike
-from typing import TypeVar
 
 from .errors import InFile
 
 _MOST_BYTES = 1_048_576
-STEP_MB = 300
-"""What one step of reading may take beyond what the process has."""
-
-T = TypeVar("T")
+#: What a child that reads a file may take.
 MEMORY_MB = 400
 #: The environment of a child that reads what may be damaged: nothing of it runs at once.
 ALONE = {
@@ -54,47 +48,6 @@ def text_of(path: str | PathLike[str], do: str) -> str:
         return bytes_of(path, do).decode()
     except UnicodeDecodeError as failure:
         raise InFile(path, f"no text in UTF-8: {failure.reason}", do=do) from failure
-
-
-@contextmanager
-def at_most(megabytes: int = STEP_MB) -> Iterator[None]:
-    """Within the block, memory beyond so much more than there is raises MemoryError.
-
-    Where the system has no such limit (all but Linux) nothing is bounded.
-    """
-    taken = _taken_bytes()
-    if taken is None:
-        yield
-        return
-    import resource
-
-    soft, hard = resource.getrlimit(resource.RLIMIT_DATA)
-    most = taken + (megabytes << 20)
-    limits = [limit for limit in (soft, hard) if limit != resource.RLIM_INFINITY]
-    resource.setrlimit(resource.RLIMIT_DATA, (min([most, *limits]), hard))
-    try:
-        yield
-    finally:
-        resource.setrlimit(resource.RLIMIT_DATA, (soft, hard))
-
-
-def each_at_most(items: Iterator[T], megabytes: int = STEP_MB) -> Iterator[T]:
-    """The same items, each made within the bound."""
-    while True:
-        with at_most(megabytes):
-            try:
-                item = next(items)
-            except StopIteration:
-                return
-        yield item
-
-
-def _taken_bytes() -> int | None:
-    try:
-        with open("/proc/self/statm") as file:
-            return int(file.read().split()[5]) * os.sysconf("SC_PAGE_SIZE")
-    except (OSError, ValueError, IndexError):
-        return None
 
 
 def python_child(code: str, *arguments: str) -> list[str]:

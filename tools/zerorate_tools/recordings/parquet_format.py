@@ -8,7 +8,7 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from ..bounds import STEP_MB, at_most, each_at_most
+from ..bounds import MEMORY_MB
 from ..errors import BadRecording
 from .checks import arrow_batch, check_names
 from .recording import TIME
@@ -25,8 +25,7 @@ def open_file(path: Path) -> pq.ParquetFile:
     if path.stat().st_size == 0:
         raise BadRecording(path, "empty file", do="record again, or name another file")
     try:
-        with at_most():
-            return pq.ParquetFile(path, pre_buffer=False, buffer_size=_BUFFER_BYTES)
+        return pq.ParquetFile(path, pre_buffer=False, buffer_size=_BUFFER_BYTES)
     except MemoryError as error:
         raise _too_large(path) from error
     except Exception as error:  # of a damaged one, whatever its parser stumbles over
@@ -48,9 +47,8 @@ def batches(
     file: pq.ParquetFile, path: Path, rows: int, names: list[str] | None = None
 ) -> Iterator[pa.RecordBatch]:
     """Arrow batches of at most `rows`, row groups read as they are needed. Raises BadRecording."""
-    found = file.iter_batches(batch_size=rows, columns=names, use_threads=False)
     try:
-        yield from each_at_most(found)
+        yield from file.iter_batches(batch_size=rows, columns=names, use_threads=False)
     except MemoryError as error:
         raise _too_large(path) from error
     except Exception as error:
@@ -59,7 +57,7 @@ def batches(
 
 
 def _too_large(path: Path) -> BadRecording:
-    problem = f"a page of it takes more than {STEP_MB} MB"
+    problem = f"a page of it takes more than {MEMORY_MB} MB"
     return BadRecording(path, problem, do="write it with smaller pages, or copy it again")
 
 
