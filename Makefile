@@ -55,8 +55,7 @@ layout: $(VENV)/.dev  ## write the constants of tools/zerorate_tools/layout wher
 	$(BIN)/python -m host_tests.layout
 
 native: layout  ## write firmware/zerorate/native from the kernels
-	$(BIN)/python -m zerorate_bench.native.native_files firmware/zerorate
-	$(BIN)/python -m zerorate_bench.native.manifests
+	$(BIN)/python -m zerorate_bench.native.native_files
 
 docs: $(VENV)/.dev wasm  ## write what in docs/ and README.md is made by a command
 	$(BIN)/python -m host_tests.docs

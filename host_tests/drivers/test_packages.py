@@ -11,7 +11,7 @@ from pathlib import PurePosixPath
 
 import pytest
 from zerorate_bench.boards.table import page
-from zerorate_bench.native.manifests import FOLDERS, manifests
+from zerorate_bench.native.native_files import FOLDERS, manifests
 from zerorate_tools.boards.compiling import board_files, mpy_version
 from zerorate_tools.boards.connection import BoardFacts
 from zerorate_tools.boards.parts import (
@@ -59,8 +59,7 @@ class TestParts:
 
 @pytest.mark.parametrize(("name", "text"), [pytest.param(*m, id=str(m[0])) for m in manifests()])
 def test_a_file_of_mip_is_fresh(repository, name, text):
-    remedy = "python -m zerorate_bench.native.manifests writes it again"
-    assert (repository / name).read_text() == text, remedy
+    assert (repository / name).read_text() == text, "make native"
 
 
 def test_what_mip_installs_of_the_driver_imports(repository, find_runtime, tmp_path):

@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from zerorate_bench.loop.corners import simulate_corners
-from zerorate_bench.loop.simulated import simulate
+from zerorate_bench.loop.simulated import simulate, simulate_corners
 from zerorate_tools.loop.search.steps_first import remove_steps
 from zerorate_tools.model.term import first_order_lag
 

@@ -149,7 +149,7 @@ BENCHES = {
             **_RESUME,
         },
     ),
-    "motion": Bench("the bias learned in motion, beside vqf's", "motion_table", _BROAD),
+    "motion": Bench("the bias learned in motion, beside vqf's", "motion", _BROAD),
     "own-axes": Bench(
         *("scale and axes that the filter in motion finds by itself", "own_axes"),
         {"--devices": _number(12, "simulated devices a row"), **_FOLDERS},

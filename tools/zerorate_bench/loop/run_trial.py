@@ -13,9 +13,8 @@ from zerorate_tools.loop.verify.judge import residuals, rms_dps, scored
 from zerorate_tools.loop.verify.prune_by_holdout import prune_by_holdout
 
 from .added_effects import CURVE_OF, PRANDTL_ISHLINSKII_TOLD
-from .corners import simulate_corners
 from .devices import CORNERS, CURVE, TOLD, Device
-from .simulated import cut_into_sessions, simulate
+from .simulated import cut_into_sessions, simulate, simulate_corners
 
 
 @dataclass
