@@ -16,8 +16,8 @@ from zerorate_tools.compare.judge import (
     Compared,
     Rest,
     TooFewRests,
+    matrix_of,
 )
-from zerorate_tools.compare.matrix import matrix_of
 from zerorate_tools.compare.show import write_page
 from zerorate_tools.demo.broad import trials
 from zerorate_tools.errors import BadRecording

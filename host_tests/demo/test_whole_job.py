@@ -17,9 +17,7 @@ import pytest
 from zerorate_tools.cli import main
 from zerorate_tools.commands.demo import get_ready
 from zerorate_tools.demo import broad, demo, story
-from zerorate_tools.demo import real as by_real
-from zerorate_tools.demo.broad import trials
-from zerorate_tools.demo.real import WAYS, real
+from zerorate_tools.demo.broad import WAYS, real, trials
 from zerorate_tools.errors import CannotFetch, MissingRuntime, ZerorateError
 from zerorate_tools.recordings import write_recording
 from zerorate_tools.runtimes import node
@@ -225,7 +223,7 @@ def test_the_firmware_finds_the_bias_that_the_cameras_tell(shown):
 def test_the_command_credits_the_authors_and_prints_the_table(filled, shown, monkeypatch, capsys):
     monkeypatch.setattr("zerorate_tools.commands.demo.get_ready", lambda runtime: None)
     asked = []
-    monkeypatch.setattr(by_real, "real", lambda *given: asked.append(given) or shown)
+    monkeypatch.setattr(broad, "real", lambda *given: asked.append(given) or shown)
     assert main(["demo", "--real", "--runtime", "x86"]) == 0
     assert [(trial.name, runtime) for trial, runtime, _ in asked] == [(broad.NAME, "x86")]
     said = capsys.readouterr().out

@@ -5,9 +5,9 @@ from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
-from zerorate_bench.resampled import digits, drawn, on_lines, timed
+from zerorate_bench.foreign_imports import digits, drawn, on_lines, timed
 from zerorate_tools.errors import BadRecording
-from zerorate_tools.importers.samples import bursts, clock, lines, resampled
+from zerorate_tools.importers.samples import clock, lines
 from zerorate_tools.importers.samples.spool import Spool
 
 from .import_steps import mostly
@@ -27,11 +27,11 @@ def _of_lines(luck):
         rates = drawn(kind, luck, 1800)
         frame = timed(on_lines(rates, ratio) if ratio else rates)
         frame[0, 900:] += 4.0  # a gap
-        yield f"evidence {kind}", list(resampled.evidence(frame, digits(kind)))
+        yield f"evidence {kind}", list(lines.evidence(frame, digits(kind)))
         off, moves = lines._off_line(frame[:, ::2], digits(kind))
         yield f"off {kind}", [float(np.log1p(off[1:-1]).mean()), int(moves.sum())]
     frame = timed(on_lines(drawn("white noise", luck, 1000), 4.2))
-    yield "period", [resampled.base_period(frame, digits(""))]
+    yield "period", [lines.base_period(frame, digits(""))]
 
 
 def _misfit(luck):
@@ -41,7 +41,7 @@ def _misfit(luck):
     rates = np.sin(taken * 4e-6 + np.arange(3)[:, None]) + luck.normal(0, 0.01, (3, 1200))
     weight = np.diff(late)[1:] / np.maximum(late[2:] - late[:-2], 1.0)
     some = np.arange(1198) % 25 < 2
-    return [bursts._misfit(rates, of, some) for of in (weight, 0 * weight + 0.5)]
+    return [clock._misfit(rates, of, some) for of in (weight, 0 * weight + 0.5)]
 
 
 def parts():
@@ -89,9 +89,9 @@ def _bursts(luck):
     rates += luck.normal(0, mostly(luck, 0.001, 1.0), (3, size))
     rates[:, luck.integers(size)] *= mostly(luck, 1.0, np.nan)
     columns = {"t_us": late, "place": np.arange(size) + 0.0, **dict(zip(("gx", "gy", "gz"), rates))}
-    told = bursts.arrive_in_bursts(columns, every)
+    told = clock.arrive_in_bursts(columns, every)
     spool = _cut(luck, columns)
-    return [float(told), *_sizes(spool.remade(bursts.evened(spool, every)))]
+    return [float(told), *_sizes(spool.remade(clock.evened(spool, every)))]
 
 
 def _lined(luck):

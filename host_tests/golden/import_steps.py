@@ -7,10 +7,16 @@ from types import SimpleNamespace
 
 import numpy as np
 from zerorate_tools.errors import ZerorateError
-from zerorate_tools.importers.columns import chip_steps, guesses
+from zerorate_tools.importers.columns import guesses
 from zerorate_tools.importers.columns.mapping import Mapped
 from zerorate_tools.importers.columns.plan import Plan
-from zerorate_tools.importers.columns.units import ACCEL_G, RATE_DPS, STANDARD_GRAVITY
+from zerorate_tools.importers.columns.units import (
+    _LSB_PER_DPS,
+    ACCEL_G,
+    RATE_DPS,
+    STANDARD_GRAVITY,
+    unit_by_steps,
+)
 from zerorate_tools.importers.samples import clock, doubts, one_device
 from zerorate_tools.importers.tables.table import Chunk, Table
 from zerorate_tools.recordings import Scales
@@ -120,15 +126,15 @@ def units():
             guessed.append(" ".join([str(unit), *told(why)]))
             offered.append(" ".join(told(guesses.ready_words(target, wanted, first))))
     counts = luck.integers(-99, 99, 400)
-    lsb = [*chip_steps._LSB_PER_DPS.ravel() ** -1.0, 0.15, 0.25, *np.geomspace(1e-6, 10, 30)]
+    lsb = [*_LSB_PER_DPS.ravel() ** -1.0, 0.15, 0.25, *np.geomspace(1e-6, 10, 30)]
     scaled = [(unit, one / of * off) for one in lsb for unit, of in RATE_DPS.items()
               for off in (1.0, 1.002, 0.996)]  # fmt: skip
-    steps = [f"{unit} {chip_steps.unit_by_steps(counts * step)}" for unit, step in scaled]
+    steps = [f"{unit} {unit_by_steps(counts * step)}" for unit, step in scaled]
     for off, number in product((0.0, 0.04, 0.06), (9, 16, 17, 18, 60)):
         rates = (
             1 / 131 * (np.arange(number) * luck.choice([1, 7, 9]) + off * np.sin(np.arange(number)))
         )
-        steps.append(str(chip_steps.unit_by_steps(np.append(rates, luck.choice([np.nan, 1e3])))))
+        steps.append(str(unit_by_steps(np.append(rates, luck.choice([np.nan, 1e3])))))
     sizes = product(np.geomspace(3e-4, 300, 25), (1.4, 4.1), (1.0, 57.3))
     rated = [guesses.rate_unit_of(Size(one, one / 1.4, one * most), by) for one, most, by in sizes]
     steps += [str(unit) for unit in rated]

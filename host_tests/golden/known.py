@@ -10,7 +10,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from zerorate import Corrector, Sensor
 from zerorate_tools.compare import compare
-from zerorate_tools.compare.matrix import matrix_of
+from zerorate_tools.compare.judge import matrix_of
 from zerorate_tools.compare.show import table
 from zerorate_tools.loop.analyse import sessions_of
 from zerorate_tools.loop.read.blocks import dequantise, step_lsb

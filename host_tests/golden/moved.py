@@ -7,7 +7,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 import pyarrow.parquet as pq
-from zerorate_tools.closing_in_motion import motion_in_words, write_in_motion
+from zerorate_tools.closing import motion_in_words, write_in_motion
 from zerorate_tools.loop.motion.by_windows import by_windows
 from zerorate_tools.loop.motion.columns import OWN, columns_of
 from zerorate_tools.loop.motion.device import Shown, device_of, distance

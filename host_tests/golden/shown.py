@@ -25,7 +25,7 @@ from zerorate_tools import peers
 from zerorate_tools.compare import Won, compare
 from zerorate_tools.compare.show import in_motion, write_page
 from zerorate_tools.demo import broad, job, picture, story
-from zerorate_tools.demo.real import real
+from zerorate_tools.demo.broad import real
 from zerorate_tools.loop.report.report import report
 from zerorate_tools.loop.verify.analysis import model_of
 from zerorate_tools.model import write_model

@@ -12,9 +12,8 @@ from zerorate_tools import guide
 from zerorate_tools.boards.recorder import COLUMNS
 from zerorate_tools.loop.motion.device import Shown
 from zerorate_tools.simulate import simulate
-from zerorate_tools.watch import own, watching
-from zerorate_tools.watch.live import Live
-from zerorate_tools.watch.own import OwnOutput
+from zerorate_tools.watch import live, watching
+from zerorate_tools.watch.live import Live, OwnOutput
 from zerorate_tools.watch.screen import Area, Lines, WatchOptions, sparkline
 
 _WARM = {
@@ -167,8 +166,8 @@ def _listened():
             "screen": lambda plain, of=shown: nullcontext(of),
             "noted_signals": lambda of=came: nullcontext(of),
         }
-        with mock.patch.multiple(own, **fakes):
-            heard = own.watch_own("port", options)
+        with mock.patch.multiple(live, **fakes):
+            heard = live.watch_own("port", options)
         yield [looked, heard and heard.samples]
 
 

@@ -12,7 +12,7 @@ from pyarrow.feather import write_feather
 from zerorate_bench.foreign_logs import binary as foreign_files
 from zerorate_tools.errors import BadRecording
 from zerorate_tools.importers import read_foreign
-from zerorate_tools.importers.logs import apart, columnar, json_file, messages
+from zerorate_tools.importers.logs import apart, arrays, json_file, messages
 
 from host_tests.hostile.many_logs import in_this_process
 
@@ -100,7 +100,7 @@ def test_words_dates_and_gaps_of_a_file_by_columns(tmp_path, write):
         "gaps": pa.array([None if n % 3 == 1 else n for n in at.tolist()], pa.float32()),
     }
     write(pa.table(columns), tmp_path / "in")
-    table = columnar.read(tmp_path / "in")
+    table = arrays.columnar(tmp_path / "in")
     chunks = [*table.chunks(table.names)]
     assert table.words == {"mode": ["still", "fast"], "kind": ["a", "b"]}
     assert table.calendar == {"at"} and max(len(chunk.place) for chunk in chunks) <= 65536
@@ -117,7 +117,7 @@ def test_a_column_that_is_there_twice_is_refused_by_its_name(tmp_path):
     columns = [pa.array([1.0]), pa.array([2.0]), pa.array([3.0])]
     pq.write_table(pa.Table.from_arrays(columns, ["gx", "gy", "gx"]), tmp_path / "in.parquet")
     with pytest.raises(BadRecording, match="the column 'gx' is there twice"):
-        columnar.read(tmp_path / "in.parquet")
+        arrays.columnar(tmp_path / "in.parquet")
 
 
 def test_a_file_without_a_row_says_so(tmp_path):

@@ -5,11 +5,10 @@ import pandas as pd
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from zerorate_bench.resampled import KINDS, digits, drawn, on_lines, timed
+from zerorate_bench.foreign_imports import KINDS, digits, drawn, on_lines, timed
 from zerorate_tools.errors import BadRecording
-from zerorate_tools.importers.samples.bursts import evened
-from zerorate_tools.importers.samples.lines import _Seen
-from zerorate_tools.importers.samples.resampled import base_period
+from zerorate_tools.importers.samples.clock import evened
+from zerorate_tools.importers.samples.lines import _Seen, base_period
 from zerorate_tools.importers.samples.spool import Spool
 
 from .test_tables import HEAD, read, table, told

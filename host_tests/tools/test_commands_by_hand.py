@@ -91,7 +91,7 @@ def test_a_model_is_shown_in_words_or_as_json(stands_in, capsys, words, said):
 @pytest.mark.parametrize("in_motion", [False, True])
 def test_close_prints_what_it_found_at_rest_or_in_motion(stands_in, capsys, in_motion):
     stands_in("zerorate_tools.closing.close", {"in_motion": 1} if in_motion else {})
-    stands_in("zerorate_tools.closing_in_motion.motion_in_words", "in motion")
+    stands_in("zerorate_tools.closing.motion_in_words", "in motion")
     stands_in("zerorate_tools.loop.report.in_words.in_words", "the words")
     stands_in("zerorate_tools.report.sentences.headline", "the headline")
     stands_in("zerorate_tools.report.sentences.why_both", "why")

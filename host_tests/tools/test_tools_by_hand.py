@@ -11,7 +11,7 @@ from unittest.mock import Mock
 
 import numpy as np
 import pytest
-from zerorate_tools import bounds, cli, closing, closing_in_motion, numbers, progress
+from zerorate_tools import bounds, cli, closing, numbers, progress
 from zerorate_tools.allan import Noise, overlapping
 from zerorate_tools.errors import InFile, ZerorateError, os_error_in_words, printable
 from zerorate_tools.host import FloatCorrector
@@ -324,7 +324,7 @@ SHOWN = SimpleNamespace(
 
 @pytest.mark.parametrize(("names", "held"), [(["a", "b", "c"], ["b"]), (["a"], ["a"])])
 def test_what_motion_shows_is_told_with_what_it_did_not_show(names, held):
-    result = closing_in_motion._result(SHOWN, names, held)
+    result = closing._result(SHOWN, names, held)
     assert result["split"]["train"] == (["a"] if len(names) == 1 else ["a", "c"])
     assert result["split"]["unit"].startswith("windows" if len(names) == 1 else "power-on")
     told = result["in_motion"]
@@ -337,20 +337,20 @@ def test_what_motion_shows_is_told_with_what_it_did_not_show(names, held):
     assert result["unexplained"]["measure_next"][0].startswith("hold x level")
     assert result["unexplained"]["what_is_known"].endswith("; a: left out")
     assert len(result["unexplained"]["measure_next"]) == 2 and result["verdict"] == "nothing-found"
-    words = closing_in_motion.motion_in_words(result).splitlines()
+    words = closing.motion_in_words(result).splitlines()
     assert words[0].startswith("found: nothing in motion; gravity sees 3.00 deg/min")
     assert "not seen in this motion: scale of x, y from z" in words
     result["effects"] = [{"effect": "scale-factor", "confidence": "confirmed"}]
     for unit, seen_by in ((GIVEN, "reference"), (GRAVITY, "gravity")):
         told["unit"] = UNIT[unit]
-        assert f"{seen_by} sees 3.00 -> 3.00" in closing_in_motion.motion_in_words(result)
+        assert f"{seen_by} sees 3.00 -> 3.00" in closing.motion_in_words(result)
 
 
 def test_the_last_recording_is_held_out_unless_another_is_named(monkeypatch):
     asked = []
-    monkeypatch.setattr(closing_in_motion, "moving_of", lambda path, ticks: path)
-    monkeypatch.setattr(closing_in_motion, "by_windows", lambda *of: asked.append(of))
+    monkeypatch.setattr(closing, "moving_of", lambda path, ticks: path)
+    monkeypatch.setattr(closing, "by_windows", lambda *of: asked.append(of))
     ticks = [SimpleNamespace(path=name) for name in "abc"]
     for given, holdout in ((ticks, None), (ticks, 0), (ticks[:1], None)):
-        closing_in_motion.shown_in_motion(given, holdout)
+        closing.shown_in_motion(given, holdout)
     assert asked == [(["a", "b"], ["c"]), (["b", "c"], ["a"]), (["a"], [])]

@@ -22,8 +22,7 @@ from zerorate_tools.replay import replay
 from zerorate_tools.replay.replaying import state_bytes
 from zerorate_tools.simulate import simulate
 from zerorate_tools.watch import watch
-from zerorate_tools.watch.live import Live
-from zerorate_tools.watch.own import OwnOutput
+from zerorate_tools.watch.live import Live, OwnOutput
 from zerorate_tools.watch.screen import Area, Lines, WatchOptions, draw, screen
 from zerorate_tools.watch.watching import CsvTail, Watcher, is_device
 

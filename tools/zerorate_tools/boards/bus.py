@@ -10,7 +10,7 @@ from zerorate_i2c.fifo import EMPTY, Fifo
 from zerorate_i2c.mpu6050 import FRESH, MPU6050, RESTARTED, VERIFIED
 
 from ..ending import noted_signals
-from .recorder import Heard, Recorded, SampleTaker, Take, recorded, scales_of
+from .recorder import Heard, Recorded, Recorder, Take, recorded, scales_of
 
 _POLLS_A_PERIOD = 3
 _PATIENCE_S = 5.0
@@ -59,7 +59,7 @@ def stream_bus(
         raise failure
 
 
-def _run(feed, imu: MPU6050, taker: SampleTaker, seconds, done) -> OSError | None:
+def _run(feed, imu: MPU6050, taker: Recorder, seconds, done) -> OSError | None:
     """Feed the taker until time is up or a signal came; the error that ended it, if one did."""
     sample = array("i", [0] * 7)
     begun = good = reported = imu.clock.ticks_us()
@@ -82,7 +82,7 @@ def _run(feed, imu: MPU6050, taker: SampleTaker, seconds, done) -> OSError | Non
     return None
 
 
-def _note(taker: SampleTaker, status: int, t_us: int, sample: array | None) -> None:
+def _note(taker: Recorder, status: int, t_us: int, sample: array | None) -> None:
     if status == RESTARTED:
         taker.discard()
     elif status == VERIFIED:

@@ -15,7 +15,7 @@ from ..errors import ZerorateError
 from ..recordings import Scales
 from ..recordings.scales import scales_from_text
 from .connection import BoardError, connected, said
-from .recorder import COLUMNS, Heard, Recorded, SampleTaker, Take, recorded, scales_of
+from .recorder import COLUMNS, Heard, Recorded, Recorder, Take, recorded, scales_of
 
 _TICKS = 1 << 30
 _SILENCE_S = 10.0
@@ -109,7 +109,7 @@ class BoardStream:
             what = "what the board says of its scales cannot be read"
             raise BoardError(f"{self._port}: {what}; is its `imu` an MPU6050?") from error
 
-    def record(self, recorder: SampleTaker, seconds: float | None, done) -> BoardError | None:
+    def record(self, recorder: Recorder, seconds: float | None, done) -> BoardError | None:
         """Hand samples to recorder until time is up or a signal came; the error that ended it."""
         begun = time.monotonic()
         reported = begun
@@ -127,7 +127,7 @@ class BoardStream:
                 reported = time.monotonic()
         return None
 
-    def _take(self, recorder: SampleTaker, kind: int, payload: bytes) -> None:
+    def _take(self, recorder: Recorder, kind: int, payload: bytes) -> None:
         if kind == SAMPLE:
             self._take_sample(recorder, payload)
         elif kind == MESSAGE:
@@ -137,7 +137,7 @@ class BoardStream:
             else:
                 recorder.result.bus_errors += 1
 
-    def _take_sample(self, recorder: SampleTaker, payload: bytes) -> None:
+    def _take_sample(self, recorder: Recorder, payload: bytes) -> None:
         sequence, ticks_us, status, words = sample_of(payload)
         if self._ticks_us is not None:
             self._t_us += (ticks_us - self._ticks_us) % _TICKS

@@ -1,6 +1,5 @@
 """Rows of a recording being made: written, and believed, only when the chip was verified."""
 
-from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
@@ -68,27 +67,8 @@ class Recorded:
 Heard = Callable[[Scales], Callable[[Columns], None]]
 
 
-class SampleTaker(ABC):
-    """What a board or a bus can stream into: a Recorder keeps samples."""
-
-    def __init__(self, result: Recorded) -> None:
-        self.result = result
-
-    @abstractmethod
-    def add(self, t_us: int, sample: Sequence[int]) -> None:
-        """One sample of seven words at t_us on any clock."""
-
-    @abstractmethod
-    def confirm(self) -> None:
-        """All since the last call are good."""
-
-    @abstractmethod
-    def discard(self) -> None:
-        """All since the last call are in doubt."""
-
-
 #: Makes what takes the samples once their scales are known.
-Take = Callable[[Scales], SampleTaker]
+Take = Callable[[Scales], "Recorder"]
 
 
 def recorded(
@@ -119,7 +99,7 @@ def recorded(
     return made[0].result
 
 
-class Recorder(SampleTaker):
+class Recorder:
     """Takes samples one by one and hands them to each of appends when they are known to be good.
 
     Rows wait until confirm() says that the chip was configured right all the while, and discard()
@@ -129,7 +109,7 @@ class Recorder(SampleTaker):
     def __init__(
         self, appends: Sequence[Callable[[Columns], None]], period_us: float, part: str = ""
     ) -> None:
-        super().__init__(Recorded(part=part))
+        self.result = Recorded(part=part)
         self._appends = appends
         self._period_us = period_us
         self._waiting: list[tuple[int, ...]] = []

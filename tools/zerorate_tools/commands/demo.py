@@ -107,8 +107,7 @@ def run_job(arguments: argparse.Namespace) -> int:
 
 def run_real(arguments: argparse.Namespace) -> None:
     from ..demo import story
-    from ..demo.broad import broad_trial
-    from ..demo.real import real
+    from ..demo.broad import broad_trial, real
     from ..progress import progress, waiting
 
     with waiting("fetching a trial of BROAD"):

@@ -105,8 +105,7 @@ def _shares(counts: dict[str, int], total: int) -> str:
     "judge it on that one. A single LOG is judged by cross-validation over pieces of it.",
 )
 def run_close(arguments: argparse.Namespace) -> None:
-    from ..closing import close
-    from ..closing_in_motion import motion_in_words
+    from ..closing import close, motion_in_words
     from ..loop.report.in_words import in_words
     from ..progress import progress
     from ..report.sentences import headline, why_both

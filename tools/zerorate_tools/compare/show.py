@@ -9,8 +9,7 @@ import matplotlib
 import numpy as np
 
 from ..recordings.atomic import written_beside
-from .judge import FIRST_REST, NOTHING, Compared
-from .matrix import Won
+from .judge import FIRST_REST, NOTHING, Compared, Won
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402

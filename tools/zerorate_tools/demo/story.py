@@ -13,9 +13,8 @@ import numpy as np
 from ..compare import Compared
 from ..numbers import fixed
 from ..report.sentences import meaning
-from .broad import CREDIT
+from .broad import CREDIT, MOTION_FROM_S, WAYS, WHOLE_FROM_S, Real
 from .job import Demo, Device, seconds
-from .real import MOTION_FROM_S, WAYS, WHOLE_FROM_S, Real
 
 _IN = " " * 10
 _NEXT = """\

@@ -10,7 +10,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.csv
 
-from ..boards.recorder import COLUMNS, Recorded, SampleTaker
+from ..boards.recorder import COLUMNS, Recorder
 from ..boards.recording import FAKE, stream
 from ..errors import BadRecording
 from ..recordings import Scales, csv_format, open_recording
@@ -121,31 +121,31 @@ def _parsed(rows: bytes, names: list[str]) -> Columns:
 _PATIENCE_S = 0.25
 
 
-class Watcher(SampleTaker):
+class Watcher(Recorder):
     """Shows samples through the firmware instead of keeping them.
 
     In doubt or not, all are given to it: its guard is there to judge them.
     """
 
     def __init__(self, source: str, scales: Scales, options: WatchOptions, shown: Screen) -> None:
-        super().__init__(Recorded())
+        super().__init__([], 1.0)
         self.live = Live(source, scales, COLUMNS, options.settings, options.model)
         self._shown, self._every_s = shown, options.seconds_between_looks(shown)
-        self._waiting: list[tuple[int, ...]] = []
+        self._rows: list[tuple[int, ...]] = []
         self._fed = self._looked = time.monotonic()
 
     def add(self, t_us: int, sample: Sequence[int]) -> None:
         """One sample of seven words."""
-        self._waiting.append((t_us, *sample))
+        self._rows.append((t_us, *sample))
         if time.monotonic() - self._fed > _PATIENCE_S:
             self.flush()
 
     def flush(self) -> None:
         """Hand to the firmware what waits, and show it when it is time."""
         self._fed = time.monotonic()
-        if self._waiting:
-            rows = np.array(self._waiting, np.int64)
-            self._waiting.clear()
+        if self._rows:
+            rows = np.array(self._rows, np.int64)
+            self._rows.clear()
             self.live.feed(dict(zip(COLUMNS, rows.T)))
         if self._fed - self._looked > self._every_s:
             self.look()
@@ -154,12 +154,6 @@ class Watcher(SampleTaker):
         """Show what there is."""
         self._looked = time.monotonic()
         self._shown.show(self.live, [])
-
-    def confirm(self) -> None:
-        """The chip was configured right: nothing to do, for nothing is kept."""
-
-    def discard(self) -> None:
-        """It was not, perhaps: the firmware's guard has seen it too."""
 
 
 def watch_board(source: str, options: WatchOptions) -> Live | None:
@@ -194,7 +188,7 @@ def watch(source: str, options: WatchOptions | None = None) -> Shown | None:
     """
     options = options or WatchOptions()
     if options.own:
-        from .own import watch_own
+        from .live import watch_own
 
         return watch_own(source, options)
     if is_device(source):

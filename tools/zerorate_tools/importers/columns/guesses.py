@@ -8,10 +8,9 @@ import numpy as np
 from ...recordings.recording import ACCEL, GYRO, TEMP, TIME
 from ...recordings.turning import Size, dps_of_one, turn_too_far
 from ..tables.table import Table
-from .chip_steps import unit_by_steps
 from .mapping import Mapped, map_words
 from .names import spelled
-from .units import ACCEL_G, RATE_DPS, RAW, TIME_S, factors_of, kind_of, unit_in_name
+from .units import ACCEL_G, RATE_DPS, RAW, TIME_S, factors_of, kind_of, unit_by_steps, unit_in_name
 
 GRAVITY = {unit: 1.0 / in_g for unit, in_g in ACCEL_G.items()}
 _GRAVITY_WITHIN = 0.15

@@ -17,11 +17,11 @@ from ...bounds import ALONE, MEMORY_MB, how_it_ended, limit_myself, python_child
 from ...errors import BadRecording, MissingLibrary
 from ..samples.spool import PLACE
 from ..tables.table import Chunk, Table
-from . import arrays, columnar, flight_logs, json_file, mcap_file, ros_bag
+from . import arrays, flight_logs, json_file, mcap_file, ros_bag
 
 _WORDS_BYTES = 65_536
 _ABOUT, _READ = b"about", b"read"
-_TOLD = ("names", "mapping", "sensor", "lsb", "notes", "words", "said_hz")
+_TOLD = ("names", "mapping", "sensor", "notes", "words", "said_hz")
 #: Reader -> its function, and what it reads.
 _READERS = {
     "ulog": (flight_logs.ulog, "ULog"),
@@ -32,7 +32,7 @@ _READERS = {
     "matlab": (arrays.matlab, ".mat file"),
     "hdf5": (arrays.hdf5, "HDF5 file"),
     "numpy_file": (arrays.numpy_file, "NumPy file"),
-    "columnar": (columnar.read, "Parquet or Feather file"),
+    "columnar": (arrays.columnar, "Parquet or Feather file"),
     "json_file": (json_file.read, "JSON"),
 }
 _RUN = "from zerorate_tools.importers.logs.apart import main; main()"

@@ -74,29 +74,24 @@ def fitting_scales(
     path: Path,
     notes: list[str],
 ) -> Scales:
-    """What is given, what the format states, else what holds every reading. Raises BadRecording."""
-
-    def pick(key: str) -> float | None:
-        given = getattr(options, key)
-        return given if given is not None else table.lsb.get(key)
-
-    keys = [k for kind, of in _SCALES_OF.items() if kind in plan.raw for k in of if pick(k) is None]
-    if keys:
+    """What is given, else what holds every reading. Raises BadRecording."""
+    keys = [key for kind, of in _SCALES_OF.items() if kind in plan.raw for key in of]
+    if keys := [key for key in keys if getattr(options, key) is None]:
         words = " ".join(f"--{key.replace('_', '-')} {EXAMPLE[key]}" for key in keys)
         do = f"give {words} (an MPU-6050's at +-250 dps and +-2 g; put your sensor's)"
         raise BadRecording(path, "the scale of raw counts is not known", do=do)
     means = found.interval_us >= MEANS_FROM_US and "gyro" not in plan.raw
-    gyro = pick("gyro_lsb_per_dps")
+    gyro = options.gyro_lsb_per_dps
     if gyro is None:
         ranges = (*(_FINE if means else ()), *_GYRO_RANGES)
         gyro = _fitting("gyro", "dps", ranges, common, notes)
     accel = temp = offset = None
     if "ax" in plan.wanted:
-        accel = pick("accel_lsb_per_g")
+        accel = options.accel_lsb_per_g
         if accel is None:
             accel = _fitting("accel", "g", _ACCEL_RANGES, common, notes)
     if TEMP in plan.wanted:
-        temp, offset = pick("temp_lsb_per_degc"), pick("temp_offset_degc")
+        temp, offset = options.temp_lsb_per_degc, options.temp_offset_degc
         if temp is None and offset is None:
             temp, offset = _temperature_scale(common, notes)
         temp = _TEMP_LSB if temp is None else temp

@@ -12,8 +12,16 @@ from ..columns.guesses import unit_words
 from ..columns.plan import Plan, hz_words
 from ..columns.units import TIME_S
 from ..tables.table import Table
-from .bursts import arrive_in_bursts, evened
-from .clock import Pace, Ticks, Unwrapped, evenly, refuse_impossible, whole_stamps
+from .clock import (
+    Pace,
+    Ticks,
+    Unwrapped,
+    arrive_in_bursts,
+    evened,
+    evenly,
+    refuse_impossible,
+    whole_stamps,
+)
 from .counts import Counts
 from .lines import without_lines
 from .one_device import refuse_change_of_unit, refuse_turns

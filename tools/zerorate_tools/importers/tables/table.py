@@ -33,10 +33,9 @@ class Table:
 
     chunks: the rows of the columns asked for, from the first one at each call; it adds to `dropped`
     what it leaves out. mapping: words as of --map that the format itself implies. calendar: columns
-    of dates and times, which come as seconds since 1970. lsb: scales that the format states, by the
-    names that Options has for them. words: columns of words, of which there are few: they come as
-    each word's number. said_hz: what the file says of its rate. read_bytes: of the file, so far,
-    where the reader knows. parts: files that it is made of.
+    of dates and times, which come as seconds since 1970. words: columns of words, of which there
+    are few: they come as each word's number. said_hz: what the file says of its rate. read_bytes:
+    of the file, so far, where the reader knows. parts: files that it is made of.
     """
 
     names: list[str]
@@ -45,7 +44,6 @@ class Table:
     calendar: frozenset[str] = frozenset()
     words: dict[str, list[str]] = field(default_factory=dict)
     sensor: str = ""
-    lsb: dict[str, float] = field(default_factory=dict)
     dropped: Counter[str] = field(default_factory=Counter)
     notes: list[str] = field(default_factory=list)
     said_hz: float | None = None
