@@ -44,7 +44,8 @@ def _of_lists(world: World) -> str:
     return json.dumps({"device": "A", **{n: of.tolist() for n, of in plain(world).items()}})
 
 
-matlab = log.file("MATLAB, version 5", "in.mat", lambda path, w: savemat(path, _arrays(w)))
+matlab = log.file("MATLAB, version 5", "in.mat",
+    lambda path, w: savemat(path, {**_arrays(w), "seen": np.zeros((12, 2 * len(w.t_s)))}))
 
 
 @log("MATLAB, a folder with a file a sensor")

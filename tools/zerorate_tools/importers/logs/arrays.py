@@ -5,7 +5,6 @@ name[k-1], a field of a structure `name.field`. The longer side has the samples.
 """
 
 import re
-from collections import Counter
 from collections.abc import Iterator
 from contextlib import suppress
 from functools import partial
@@ -18,6 +17,7 @@ import pyarrow.compute as pc
 
 from ...errors import BadRecording
 from ...recordings.parquet_format import batches, open_file
+from ..columns.names import gyro_groups
 from ..tables.sniffing import MOST_WORDS
 from ..tables.table import Chunk, Table, one_after_the_other
 
@@ -70,7 +70,8 @@ def numpy_file(path: Path, instance: int = 0) -> Table:
 
 
 def table_of_arrays(found: dict[str, Any], path: Path, do: str) -> Table:
-    """The arrays that share the most rows. do: what to do where there is none of numbers.
+    """The arrays of as many rows as those that are called rates, else of the most. do: what to do
+    where there is none of numbers.
 
     Raises BadRecording.
     """
@@ -83,14 +84,15 @@ def table_of_arrays(found: dict[str, Any], path: Path, do: str) -> Table:
         and value.ndim <= 2
     }
     numeric = {n: v.T if v.shape[0] < v.shape[1] else v for n, v in numeric.items()}
-    rows = max(Counter(len(v) for v in numeric.values()), default=0)
-    columns: dict[str, np.ndarray] = {}
+    by_rows: dict[int, dict[str, np.ndarray]] = {}
     for name, value in numeric.items():
-        if rows and len(value) == rows:
-            for k in range(value.shape[1]):
-                columns[name if value.shape[1] == 1 else f"{name}[{k}]"] = value[:, k]
-    if not columns:
+        columns = by_rows.setdefault(len(value), {})
+        for k in range(value.shape[1]):
+            columns[name if value.shape[1] == 1 else f"{name}[{k}]"] = value[:, k]
+    every = [by_rows[rows] for rows in sorted(by_rows, reverse=True) if rows]
+    if not every:
         raise BadRecording(path, "no array of numbers", do=do)
+    columns = next((one for one in every if gyro_groups(list(one))), every[0])
     chunks = partial(one_after_the_other, [columns])
     return Table(list(columns), chunks, said_hz=rate_said(found))
 
