@@ -66,6 +66,7 @@ def test_effects_of_sensors_are_over_what_their_sources_reach(every, span):
     both = of_kind(every, "supply-temperature")
     assert len({(c.terms[0].centre, c.terms[0].second_centre) for c in both}) == len(both) == 9
     assert (both[0].terms[0].second_lo, both[0].terms[0].second_hi) == (15.0, 35.0)
+    assert squared.sources == ["acc_x"], "the others did not move"
     first, reach = squared.terms[0], max(-span["acc_x"][0], span["acc_x"][1])
     assert (first.lo, first.hi, first.centre) == (-reach, reach, 0.0)
     assert not of_kind(every, "vibration") and not of_kind(every, "rate-scale")
@@ -85,7 +86,9 @@ def test_any_channel_has_curves_and_products_with_those_behind_it(every):
 def test_a_source_that_hardly_moves_shows_nothing(name, least):
     for times in (0.97, 1.03):
         moves = warm(**{name: np.linspace(0.0, times * least, 50)})
+        still = replace(moves, weight=(np.arange(50) < 5).astype(float))
         assert bool(varies(name, [warm(**{name: np.zeros(50)}), moves])) is (times > 1)
+        assert not varies(name, [still]) or name == "load", "where no rate is known it says nothing"
     assert varies("time", [moves])
 
 

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from zerorate_tools.loop.fit.regression import Regression
 from zerorate_tools.loop.search import curve, examine, hysteresis, select
 from zerorate_tools.loop.search.catalogue import Candidate
 from zerorate_tools.loop.search.decide import Decision
@@ -15,6 +16,7 @@ from zerorate_tools.model.term import Term
 
 from . import dense
 from .dense import A, B, C, D
+from .selections import warm
 
 PASSED = Decision(True, 1e-6, 40.0, 1.0, np.zeros(0))
 LAG, RATE, KINK, LOOP, BEND, VOLTS = (
@@ -84,6 +86,19 @@ def test_on_one_recording_more_speaks_against_an_effect(
     told = examiner._by_pieces(PASSED, judged, candidate, (A,), [B])
     assert (told.accepted, told.reason or "pieces") == (said == "pieces", said)
     assert told.session_gains.sum() == 9.0 * (said == "pieces")
+
+
+@pytest.mark.parametrize(("reach_g", "found"), [(0.25, True), (0.0025, False)])
+def test_acceleration_adds_no_more_than_a_gyroscope_follows_it_by(reach_g, found):
+    session = warm(blocks=100, acc_x=reach_g * np.sign(np.sin(np.arange(100.0))))
+    session.rate_dps = 0.005 * session.rate_dps + 0.05 / reach_g * session.sources["acc_x"][:, None]
+    r, pose = Regression([session]), Candidate("linear-acceleration", (Term("acc_x"),), "catalogue")
+    alone = r.gains([], [pose.terms]).sum()
+    testing = SimpleNamespace(
+        regression=r, pool=[pose], tried=lambda c: 1.0, is_by_time=lambda c: False
+    )
+    told = Examiner(testing, None)._by_likelihood(pose, [])
+    assert alone > 300 and told.accepted is found and (told.ratio > 0.6 * alone) == found
 
 
 def test_forms_of_a_hysteresis_have_one_to_four_operators_without_and_with_squares(monkeypatch):

@@ -216,7 +216,8 @@ def _group(row: Effect, span, varied, sessions) -> list[Candidate]:
         return []
     if not any(n in varied for n in row.source) or not all(n in span for n in row.source):
         return []
-    terms = tuple(Term(n, **_fields(dict(row.fields), span, n)) for n in row.source)
+    shown = [n for n in row.source if n in varied]
+    terms = tuple(Term(n, **_fields(dict(row.fields), span, n)) for n in shown)
     return [Candidate(row.kind, terms, "catalogue")]
 
 
@@ -236,8 +237,8 @@ _SMALLEST |= {"rate_x": 2.0, "rate_y": 2.0, "rate_z": 2.0}
 
 
 def varies(name: str, sessions: list[Session]) -> bool:
-    """Whether a source moves enough within sessions to show anything."""
+    """Whether a source moves enough within a session, where the rate is known, to show anything."""
     if name == "time":
         return True
-    means = [s.block_mean(s.source(name)) for s in sessions]
-    return max(np.ptp(m) for m in means) > _SMALLEST.get(name, 1e-12)
+    known = [_known(s, name, False) for s in sessions]
+    return max(np.ptp(k) for k in known if len(k)) > _SMALLEST.get(name, 1e-12)
