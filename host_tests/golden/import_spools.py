@@ -5,7 +5,6 @@ from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
-from zerorate_bench.foreign_imports import digits, drawn, on_lines, timed
 from zerorate_tools.errors import BadRecording
 from zerorate_tools.importers.samples import clock, lines
 from zerorate_tools.importers.samples.spool import Spool
@@ -22,16 +21,18 @@ def _spooled(pieces):
 
 
 def _of_lines(luck):
-    """Evidence for lines between rows at some ratios, and how far rows are off them."""
-    for kind, ratio in (("white noise", 0), ("in motion", 1.3), ("coarse", 1.7)):
-        rates = drawn(kind, luck, 1800)
-        frame = timed(on_lines(rates, ratio) if ratio else rates)
+    """How far rows are off the lines through their neighbours, at some ratios of rows to readings,
+    and whether these lie on rows."""
+    for ratio in (1.0, 1.3, 3.3):
+        rates, at = luck.standard_normal((3, 1800)), np.arange(0.3, 1799, 1 / ratio)
+        rates = np.array([np.interp(at, np.arange(1800), axis) for axis in rates])
+        frame = np.vstack([np.arange(len(at)), rates])
         frame[0, 900:] += 4.0  # a gap
-        yield f"evidence {kind}", list(lines.evidence(frame, digits(kind)))
-        off, moves = lines._off_line(frame[:, ::2], digits(kind))
-        yield f"off {kind}", [float(np.log1p(off[1:-1]).mean()), int(moves.sum())]
-    frame = timed(on_lines(drawn("white noise", luck, 1000), 4.2))
-    yield "period", [lines.base_period(frame, digits(""))]
+        off, moves = lines._off_line(frame, np.full(3, 1e-4))
+        seen = lines._Seen()
+        seen.add(off, moves)
+        told = [int(moves.sum()), seen.lines, seen.stretches, seen.even, seen.odd]
+        yield f"off {ratio:g}", [float(np.log1p(off[1:-1]).mean()), *told]
 
 
 def _misfit(luck):

@@ -5,93 +5,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
 
 from ...errors import BadRecording
 from ...recordings.recording import GYRO
 from .spool import TIME, Spool
-
-#: Rows of a block; so few blocks tell nothing, and so many enough.
-_BLOCK, _FEWEST, _MOST = 64, 8, 64
-#: Rows to a reading. Fewer leave too few rows too many, and of more a block has too few.
-_PERIODS = (1.07, 2.2)
-_PHASES = 6
-#: Nats for it in half of the blocks.
-_SURE = 20.0
-
-
-def base_period(frame: np.ndarray, digits: np.ndarray) -> float:
-    """Rows to a reading of (4, n) times and rates of that many digits, that were resampled from
-    fewer; 0 where they were not: by a likelihood ratio.
-
-    Each reading has noise that those around it do not tell. Of n rows on lines between readings at
-    a period of r rows, n - n / r are told by the others: once what rows have in common is taken off
-    all, lines with knots at that period leave nothing, at one phase. Of readings they leave that
-    noise.
-    """
-    found, every, unsure = 0.0, 1, 0
-    # lines of a period are lines of its half, too: two in a row without them rule out longer ones
-    while frame.shape[1] >= every * _BLOCK * _FEWEST and unsure < 2:
-        nats, period = evidence(frame[:, ::every], digits)
-        found = every * period if nats > _SURE else found
-        unsure = 0 if nats > _SURE else unsure + 1
-        every *= 2
-    return found
-
-
-def evidence(frame: np.ndarray, digits: np.ndarray) -> tuple[float, float]:
-    """Nats for lines between readings in the median block, at the likeliest period, and that."""
-    steps = np.diff(frame[0])
-    even = sliding_window_view(steps < 1.5 * np.median(steps), _BLOCK - 1).all(axis=1)
-    starts = np.flatnonzero(even)
-    if len(starts) < _BLOCK * (_FEWEST - 1):
-        return 0.0, 0.0
-    counts = frame[1:].T / digits
-    some = starts[np.linspace(0, len(starts) - 1, min(len(starts) // _BLOCK, _MOST)).astype(int)]
-    blocks = counts[some + np.arange(_BLOCK)[:, None]].reshape(_BLOCK, -1)
-    taken_off = _taken_off(counts, starts)
-    news = taken_off @ (blocks - blocks.mean(axis=0))
-    # digits are rounded: of their square some 1/4 is noise of any row
-    rounded = (taken_off**2).sum() / 4 / _BLOCK
-    usual = (np.median(abs(news), axis=0) / 0.6745) ** 2 + rounded
-    return max((_nats(news, usual, rounded, left), period) for period, left in _lines(taken_off))
-
-
-def _taken_off(counts: np.ndarray, starts: np.ndarray) -> np.ndarray:
-    """(_BLOCK, _BLOCK) what makes noise of rows that have something in common."""
-    windows = sliding_window_view(counts, _BLOCK, axis=0)[starts[:: 1 + len(starts) // 20000]]
-    windows = (windows - windows.mean(axis=2, keepdims=True)) / (counts.std(axis=0)[:, None] + 1)
-    flat = windows.reshape(-1, _BLOCK)
-    common = flat.T @ flat
-    common += 1e-9 * (1 + np.trace(common)) * np.eye(_BLOCK) + common.max()
-    return np.linalg.inv(np.linalg.cholesky(common))
-
-
-def _nats(news: np.ndarray, usual: np.ndarray, rounded: float, phases: list[np.ndarray]) -> float:
-    """The log likelihood ratio of the best phase to the usual noise and to the opposite phase,
-    which is as far from the rows: lines through rows fit what is smooth better than others."""
-    left = [((left @ news) ** 2).mean(axis=0) + rounded for left in phases]
-    noise = (np.array(left) / usual).reshape(len(phases), -1, 3).mean(axis=2)
-    opposite = np.roll(noise, len(phases) // 2, axis=0)
-    best = noise.argmin(axis=0)[np.newaxis]
-    least, other = (np.take_along_axis(one, best, axis=0) for one in (noise, opposite))
-    return 1.5 * len(phases[0]) * float(np.median(np.log(np.minimum(1, other) / least)))
-
-
-def _lines(taken_off: np.ndarray) -> Iterator[tuple[float, list[np.ndarray]]]:
-    """Each period and, for each phase of its knots, what is orthogonal to lines between these."""
-    rows, period = np.arange(_BLOCK), _PERIODS[0]
-    while period < _PERIODS[1]:
-        phases = []
-        for phase in np.arange(_PHASES) / _PHASES:
-            knots = np.arange(-1, _BLOCK / period + 2) + phase
-            hats = np.maximum(1 - np.abs(rows[:, None] / period - knots), 0)
-            lines = taken_off @ hats[:, hats.any(axis=0)]
-            phases.append(np.linalg.qr(lines, mode="complete")[0][:, lines.shape[1] :].T)
-        yield period, phases
-        # the last knot then moves by no more than it may be off
-        period += 0.5 * period**2 / _BLOCK
-
 
 #: Of a step, that much is lost where times are dates of seconds since 1970.
 _OF_STEP = 1e-4
@@ -99,9 +16,9 @@ _OF_STEP = 1e-4
 _CLEARLY = 8.0
 #: Noise puts some rows near a line, and by chance one of so many upon it.
 _BETWEEN, _BY_CHANCE, _RUN = 0.05, 0.01, 5
-#: Rows that are on no line are as many as the readings, where they are these; else twice as many,
-#: or half as many more where every other reading is on a row.
-_TOO_MANY = 1.25
+#: Between lines stand a reading, or the two rows around each reading that is no row itself. Rows
+#: lost by chance, and noise that lies on lines by chance, leave odd numbers of rows as often.
+_LEAST_EVEN, _EVEN, _ODD = 20, 0.3, 0.1
 
 
 @dataclass
@@ -114,6 +31,9 @@ class _Seen:
     near: int = 0
     off: int = 0
     longest: int = 0
+    stretches: int = 0
+    even: int = 0
+    odd: int = 0
 
     def add(self, off: np.ndarray, moves: np.ndarray) -> None:
         on = (off <= 1.0) & moves
@@ -122,13 +42,21 @@ class _Seen:
         self.on += int(on.sum())
         self.off += int((moves & (off > _CLEARLY)).sum())
         self.near += int((moves & ~on & (off <= _CLEARLY)).sum())
-        edges = np.flatnonzero(np.diff(on, prepend=False, append=False))
-        self.longest = max(self.longest, int(np.diff(edges)[::2].max(initial=0)))
+        self.longest = max(self.longest, int(_stretches(on).max(initial=0)))
+        between = _stretches(off > 1.0)
+        self.stretches += len(between)
+        self.even += int((between % 2 == 0).sum())
+        self.odd += int(((between % 2 == 1) & (between > 1)).sum())
 
     @property
     def are_lines(self) -> bool:
         two_kinds = self.near < _BETWEEN * self.off
         return two_kinds and (self.on > _BY_CHANCE * self.rows or self.longest >= _RUN)
+
+    @property
+    def ends_are_no_rows(self) -> bool:
+        least = max(_LEAST_EVEN, _EVEN * self.stretches)
+        return self.even >= least and self.odd <= _ODD * self.even
 
 
 def without_lines(spool: Spool, path: Path) -> tuple[Spool, int]:
@@ -138,17 +66,17 @@ def without_lines(spool: Spool, path: Path) -> tuple[Spool, int]:
     seen = _Seen()
     for _, off, moves in _pieces(spool, digits):
         seen.add(off, moves)
-    first = _frame(spool.read(0)) if spool.pieces else np.empty((4, 0))
-    period = base_period(first, digits)
-    left = seen.rows - seen.lines
-    if period and not (seen.are_lines and left * period <= _TOO_MANY * seen.rows):
-        problem = (
-            f"its rows lie on lines between {100 / period:.0f} % as many, as of a resampled log"
-        )
+    if seen.ends_are_no_rows:
+        problem = "its rows lie on lines between readings that are no rows, as of a resampled log"
         raise BadRecording(path, problem, do="import the log as the sensor wrote it")
     if not seen.are_lines:
         return spool, 0
     return spool.remade(_off_lines(spool, digits)), seen.lines
+
+
+def _stretches(where: np.ndarray) -> np.ndarray:
+    """How long each stretch is in which it holds."""
+    return np.diff(np.flatnonzero(np.diff(where, prepend=False, append=False)))[::2]
 
 
 def _off_lines(spool: Spool, digits: np.ndarray) -> Iterator[dict[str, np.ndarray]]:
