@@ -29,7 +29,7 @@ REPOSITORY = Path(__file__).resolve().parents[1]
 # (An interpreter reads the file as it is, and so would tell any mutant from it.)
 _ELSEWHERE = (
     *("micropython", "bytecode", "heap", "runtime", "last_byte", "any_slot", "no_intermediate"),
-    *("every_interpreter", "signal_at_any_rename", "end_by_a_signal", "log_of_another_tool"),
+    *("every_interpreter", "signal_at_any_rename", "log_of_another_tool"),
     *("in_processes_of_their_own", "hang_up", "random_moment", "real_recording"),
     *("without_a_cache", "gives_what_the_disk_gives", "copied_and_seen_to_change"),
 )

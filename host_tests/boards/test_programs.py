@@ -2,12 +2,14 @@
 
 import json
 import re
+import time
 from dataclasses import replace
 
 import numpy as np
 import pytest
+import serial
 from zerorate_bench.boards.measuring import LIMITS, plays
-from zerorate_bench.boards.pico import Play, on_host, on_pico
+from zerorate_bench.boards.pico import EmulatedPico, Play, on_host, on_pico
 from zerorate_bench.workload import workload
 from zerorate_i2c.mpu6050 import MPU6050
 from zerorate_tools.boards.connection import BoardError, connected
@@ -18,8 +20,58 @@ from zerorate_tools.recordings import read_recording
 from host_tests.firmware import trace
 from host_tests.firmware.trace_on_host import GOLDEN, checksums, corrector_for, frames
 
-from .conftest import Console
 from .day import Day, passed
+
+# The board's own seconds are a fraction of these where the machine is free.
+PATIENCE_S = 240
+
+
+class Console:
+    """Lines that the board prints, and keys to it."""
+
+    def __init__(self, port):
+        self._serial = serial.Serial(port, timeout=0.2)
+        self._rest = b""
+        self.said = []
+
+    def close(self):
+        self._serial.close()
+
+    def press(self, keys):
+        """Send bytes as a terminal does."""
+        self._serial.write(keys)
+
+    def lines(self):
+        """Whole lines, for as long as the board prints any in time."""
+        until = time.monotonic() + PATIENCE_S
+        while time.monotonic() < until:
+            *whole, self._rest = (self._rest + self._serial.read(4096)).split(b"\n")
+            for line in whole:
+                self.said.append(line.decode(errors="replace").strip())
+                yield self.said[-1]
+        raise AssertionError(f"after {self.said} the board said no more than {self._rest!r}")
+
+    def line_with(self, word):
+        """The next line in which the word is."""
+        return next(line for line in self.lines() if word in line)
+
+
+@pytest.fixture(scope="session")
+def flashed_pico(pico_parts, tmp_path_factory):
+    """A Pico that was flashed with the rest path; port: a symbolic link to its serial device."""
+    link = tmp_path_factory.mktemp("run") / "tty-a"
+    with EmulatedPico(pico_parts, link=link) as board:
+        board.flashed = flash(board.port, say=lambda line: None)
+        yield board
+
+
+@pytest.fixture(scope="module")
+def pico(flashed_pico):
+    """The same, which runs for this module alone: an idle board takes a whole processor."""
+    flashed_pico.resume()
+    yield flashed_pico
+    flashed_pico.pause()
+
 
 RATES = re.compile(r"before (\S+) (\S+) (\S+)  after (\S+) (\S+) (\S+) dps")
 BIAS_DPS = [40 / 131, -25 / 131, 10 / 131]

@@ -3,22 +3,17 @@
 import errno
 import os
 import signal
-import subprocess
 import sys
 import threading
-import time
 
 import pytest
 from zerorate_tools import closing
 from zerorate_tools.ending import noted_signals, undisturbed
 from zerorate_tools.errors import InFile
-from zerorate_tools.recordings import write_recording
 from zerorate_tools.recordings.atomic import all_written_together, written_beside, written_together
 
 from host_tests.tools.killed_recorders import MOST_S, trials
 from host_tests.tools.killed_writers import WRITERS, Trials
-
-from .test_recordings import a_recording
 
 
 def full(*arguments, **options):
@@ -105,22 +100,6 @@ def test_close_leaves_the_folder_as_it_was_where_its_report_has_no_room(old, mon
     with pytest.raises(InFile, match="No space left"):
         closing.close(["x"], old)
     assert contents(old) == before
-
-
-@pytest.mark.skipif(os.name == "nt", reason="a process is ended there without a word")
-def test_the_end_by_a_signal_leaves_nothing_half_written(tmp_path):
-    write_recording(a_recording(60000), tmp_path / "x.parquet")
-    out = tmp_path / "out"
-    out.mkdir()
-    command = [sys.executable, "-m", "zerorate_tools.cli", "replay", str(tmp_path / "x.parquet")]
-    run = subprocess.Popen([*command, "--runtime", "cpython", "--out", str(out / "o.parquet")])
-    until = time.monotonic() + 60
-    while not list(out.iterdir()) and time.monotonic() < until:
-        time.sleep(0.02)
-    assert list(out.iterdir()) and run.poll() is None
-    run.send_signal(signal.SIGTERM)
-    assert run.wait(60) == -signal.SIGTERM
-    assert not list(out.iterdir())
 
 
 NUMBERS = [signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)]

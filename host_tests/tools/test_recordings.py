@@ -7,7 +7,6 @@ from threading import current_thread, main_thread
 
 import numpy as np
 import pyarrow as pa
-import pyarrow.parquet as pq
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
@@ -17,7 +16,6 @@ from zerorate_tools.recordings import (
     open_recording,
     read_recording,
     recording_from_columns,
-    recording_writer,
     write_recording,
 )
 from zerorate_tools.recordings.checks import GAP, check_names
@@ -51,31 +49,6 @@ def test_a_recording_comes_back_as_it_was_written(tmp_path, file_name):
         np.testing.assert_array_equal(read.columns[name], written.columns[name])
 
 
-@pytest.mark.parametrize("file_name", FORMATS)
-def test_batches_join_to_the_whole(tmp_path, file_name):
-    write_recording(a_recording(1000), tmp_path / file_name)
-    parts = list(open_recording(tmp_path / file_name).batches(rows=300))
-    assert max(len(part["t_us"]) for part in parts) <= 300
-    joined = np.concatenate([part["gx"] for part in parts])
-    np.testing.assert_array_equal(joined, read_recording(tmp_path / file_name).columns["gx"])
-
-
-def test_parquet_row_groups_are_read_only_as_they_are_needed(tmp_path):
-    rows, groups = 100_000, 24
-    with recording_writer(tmp_path / "run.parquet", ["t_us", "gx", "gy", "gz"], SCALES) as writer:
-        for group in range(groups):
-            t_us = np.arange(rows) + group * rows
-            writer.append(dict.fromkeys(("t_us", "gx", "gy", "gz"), t_us))
-    opened = open_recording(tmp_path / "run.parquet")
-    assert opened.n_samples == rows * groups
-    assert pq.ParquetFile(tmp_path / "run.parquet").num_row_groups == groups
-    before, most = pa.total_allocated_bytes(), 0
-    for _ in opened.batches(rows=10_000):
-        most = max(most, pa.total_allocated_bytes() - before)
-    whole = rows * groups * (8 + 3 * 4)
-    assert 0 < most < whole / 4
-
-
 @settings(max_examples=20, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(
     st.lists(st.tuples(st.integers(-(2**62), 2**62), st.integers(GAP + 1, 2**31 - 1)), min_size=1),
@@ -93,15 +66,6 @@ def test_any_time_of_62_bits_and_channel_of_32_survive(tmp_path, rows, file_name
 def test_a_number_that_does_not_fit_is_refused_where_a_recording_is_made():
     with pytest.raises(BadRecording, match="row 2: load is 2147483648, which does not fit"):
         a_recording(2, load=np.array([0, 2**31]))
-
-
-def test_without_acceleration_and_temperature_no_such_scales_are_needed(tmp_path):
-    columns = {name: np.arange(3) for name in ("t_us", "gx", "gy", "gz")}
-    recording = recording_from_columns(columns, Scales("X", 1.0, 100.0))
-    write_recording(recording, tmp_path / "run.csv")
-    read = read_recording(tmp_path / "run.csv")
-    assert not read.has_accel and not read.has_temp
-    assert "accel_lsb_per_g" not in json.loads((tmp_path / "run.json").read_text())
 
 
 @pytest.mark.parametrize("file_name", FORMATS)
