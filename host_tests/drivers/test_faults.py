@@ -145,8 +145,3 @@ def test_a_fault_is_detected_every_time_and_never_learned_from(name):
     row = run_fault(name)
     assert row["detected"] == row["injected"] > 0
     assert row["learned_from"] == 0
-
-
-def test_a_corrector_that_takes_nothing_back_would_learn_from_them(monkeypatch):
-    monkeypatch.setattr("zerorate_bench.bus_faults.Watch.take_back", lambda self: None)
-    assert run_fault("brown-out-awake")["learned_from"] > 0

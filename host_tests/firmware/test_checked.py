@@ -75,15 +75,6 @@ def test_a_restart_takes_back_and_begins_a_new_power_on(feed):
     assert feed.bias_lsb() == pytest.approx(100, abs=1)
 
 
-def test_what_is_known_stands_through_a_restart(feed):
-    feed.rest(1, 100, checked.VERIFIED)
-    before = feed.bias_lsb(), feed.checked.corrector.quality_lsb(0)
-    feed.checked.update(feed.sample, 10000, checked.RESTARTED)
-    assert (feed.bias_lsb(), feed.checked.corrector.quality_lsb(0)) == before
-    feed.rest(1, 100)
-    assert feed.bias_lsb() == pytest.approx(100, abs=1)
-
-
 def test_after_a_restart_an_offset_is_no_surer_than_one_of_a_turn_on(feed):
     state, settings = feed.checked.corrector.state, feed.checked.corrector.settings
     first, usual = settings[SETTINGS.AXES], settings[SETTINGS.TURN_ON_VARIANCE_Q8]

@@ -27,7 +27,6 @@ from zerorate_tools.importers import Options, import_recording, read_foreign
 from zerorate_tools.model import build_model, encoded, from_json, to_json
 from zerorate_tools.recordings import (
     read_recording,
-    write_recording,
 )
 from zerorate_tools.report.page import _environment, markup, script_json
 from zerorate_tools.simulate import simulate
@@ -257,19 +256,3 @@ def test_any_name_on_a_page(name):
     text = _environment().from_string(page).render(name=name, data=script_json([name]))
     assert Elements(text).found == [("p", ["title"]), ("script", []), ("b", [])]
     assert Elements(markup(name)).found == []
-
-
-@PATIENT
-@given(ANY_TEXT, ANY_TEXT)
-def test_any_names_in_scales(tmp_path, sensor, key):
-    scales = {"odr_hz": 1, "gyro_lsb_per_dps": 1, key: sensor, "sensor": sensor}
-    (tmp_path / "x.csv").write_text("t_us,gx,gy,gz\n1,2,3,4\n")
-    (tmp_path / "x.json").write_text(json.dumps(scales))
-
-    def copied():
-        recording = read_recording(tmp_path / "x.csv")
-        write_recording(recording, tmp_path / "y.parquet")
-        assert script_json(recording.scales.to_json()).encode()
-        assert build_model([], recording.scales)
-
-    reads_or_refuses(copied)

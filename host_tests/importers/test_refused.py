@@ -4,7 +4,6 @@ import json
 import os
 import re
 import zipfile
-from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -12,7 +11,6 @@ import pytest
 from zerorate_tools.errors import BadRecording, ZerorateError
 from zerorate_tools.importers import Options, import_recording, parsed_mapping, read_foreign
 from zerorate_tools.importers.report import cut_words
-from zerorate_tools.importers.samples.one_device import refuse_change_of_unit
 
 from .test_tables import HEAD, lines, rates, read, table
 
@@ -169,8 +167,3 @@ def test_axes_of_another_sensor_are_offered_as_no_rates(tmp_path, name, names, t
 def test_cut_is_offered_for_what_it_can_read(tmp_path):
     assert "zerorate cut" in cut_words(tmp_path / "a.csv", 9)
     assert "zerorate cut" not in cut_words(tmp_path, 9)
-
-
-def test_where_no_sample_is_whole_no_unit_changes(tmp_path):
-    plan = SimpleNamespace(wanted={"gx", "gy", "gz", "ax", "ay", "az"})
-    assert refuse_change_of_unit([], plan, None, tmp_path) is None

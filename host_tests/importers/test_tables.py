@@ -8,7 +8,6 @@ from operator import xor
 
 import numpy as np
 import pandas as pd
-import pyarrow as pa
 import pytest
 from zerorate_tools.importers import Options, import_recording, parsed_mapping, read_foreign
 from zerorate_tools.importers.tables import checked_lines, delimited
@@ -160,10 +159,6 @@ def test_any_encoding_is_read(tmp_path, encoding):
     assert recording.temp_degc()[0] == pytest.approx(25)
 
 
-def test_a_torn_year_is_a_time_too():
-    assert delimited.seconds_of(pa.array(["2970-01-01T00:00:00", "x"]))[0] == 31556995200
-
-
 THREE = table(50)[RATES].to_numpy()
 ROWS = [f"{i / 100},{x:.4f},{y:.4f},{z:.4f}" for i, (x, y, z) in enumerate(THREE)]
 PRINTED = [str({"t": i / 100, "gyro": dict(zip("xyz", row.tolist()))})
@@ -248,14 +243,6 @@ def test_text_of_people_is_read(tmp_path, text, mapping, options, lost):
     assert recording.scales.odr_hz == pytest.approx(100) and sum(report.dropped.values()) == lost
 
 
-def test_rows_without_readings_have_no_say_about_the_clock(tmp_path):
-    rows = "".join(f"{1.4e18 + i * 5e6:.0f},0.8,0.8,0.9\n" for i in range(50))
-    notes = "1403636763.853,,,\n1403636763.848,,,\n"
-    recording, report = read(tmp_path, "timestamp [ns],gx_dps,gy_dps,gz_dps\n" + rows + notes)
-    assert len(recording) == 50 and report.dropped["no reading of these columns"] == 2
-    assert not told(report, "ran over")
-
-
 def test_the_digits_of_a_channel_are_kept_by_the_words_that_are_offered(tmp_path):
     turn = np.linspace(0.0, 3.0, 500)
     frame = table(500).assign(quat_w=np.cos(turn))
@@ -304,13 +291,6 @@ def test_the_time_is_found_among_columns(tmp_path, columns, mapping, step_us):
     frame = table(500).drop(columns="t_s")
     recording, _ = read(tmp_path, pd.DataFrame(columns | dict(frame)), mapping=mapping)
     assert np.abs(np.diff(recording.columns["t_us"]) - step_us).max() <= 1
-
-
-def test_a_rate_overrides_a_time_column_and_says_so(tmp_path):
-    frame = table(50).rename(columns={"t_s": "when"}).assign(timestamp="yesterday")
-    recording, report = read(tmp_path, frame, options=Options(hz=4))
-    assert recording.columns["t_us"][1] == 250_000
-    assert told(report, "time column 'timestamp' left aside, as --hz is given")
 
 
 @pytest.mark.parametrize(

@@ -117,13 +117,6 @@ def test_gaps_and_cells_without_a_number_do_not_change_what_is_told():
     assert dps_of_one(*slow[1:], slow[0]) is None
 
 
-def test_vectors_turn_as_rotation_vectors_say():
-    vectors, turn = np.random.default_rng(1).normal(0, 1, (2, 3, 20))
-    turn[:, 0] = 0.0
-    turned = Rotation.from_rotvec(turn.T).apply(vectors.T).T
-    assert turning._turned(vectors, turn) == pytest.approx(turned, abs=1e-12)
-
-
 def test_spans_are_of_three_seconds_without_a_gap_in_means_of_30_ms():
     t_s = np.arange(300 * 8 + 1) / 100
     t_s[301:] += 0.29  # within the second span, the first step of which is whole

@@ -30,19 +30,6 @@ def moved(motion):
     return {"sensor": {"gyro_lsb_per_dps": 131.0}, "every_session": {"motion": motion}}
 
 
-def test_the_same_seed_gives_the_same_recording_bit_for_bit():
-    first, second, other = (simulate("car", seed=seed)[0] for seed in (3, 3, 4))
-    assert all((first.columns[n] == second.columns[n]).all() for n in first.columns)
-    assert (first.columns["gx"] != other.columns["gx"]).mean() > 0.5
-
-
-def test_an_effect_disturbs_no_noise():
-    noisy = {"sensor": {"gyro_noise_dps": 0.05}, "noise": {"random_walk_dps": 0.001}}
-    without, _ = simulate(device(**noisy))
-    moved, _ = simulate(device(**noisy, effect=[{"kind": "step", "at_s": 0.0, "dps": 1.0}]))
-    assert set(moved.columns["gx"] - without.columns["gx"]) == {1000}
-
-
 def test_one_session_alone_is_the_same_as_among_all():
     noisy = device(1, 10.0, sensor={"gyro_noise_dps": 0.05}, sessions=2)
     every = list(simulate_sessions(noisy))
