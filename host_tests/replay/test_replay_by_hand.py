@@ -16,7 +16,6 @@ from zerorate_tools.model.term import Term
 from zerorate_tools.recordings import Scales, recording_from_columns
 from zerorate_tools.recordings.checks import GAP
 from zerorate_tools.replay import replay
-from zerorate_tools.replay.bias_table import SOURCES, table
 from zerorate_tools.replay.engines import (
     CPythonEngine,
     InterpreterEngine,
@@ -26,11 +25,13 @@ from zerorate_tools.replay.engines import (
 )
 from zerorate_tools.replay.plot import plot
 from zerorate_tools.replay.replaying import (
+    SOURCES,
     _count,
     can_be_a_state,
     corrector_for,
     load_model,
     state_bytes,
+    table,
 )
 from zerorate_tools.replay.samples import frames_in_batches
 from zerorate_tools.replay.state_in_words import Word, words_of_file

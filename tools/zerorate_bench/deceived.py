@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from zerorate_tools.peers import given
 from zerorate_tools.recordings import Recording, Scales
 from zerorate_tools.simulate.attitude import facing, integrate, into_body
+from zerorate_tools.simulate.device import counts
 from zerorate_tools.simulate.motion import Bout, Start, hand
 
 from .deceived_worlds import WORLDS, aircraft, begun_in_a_turn, pieces, tremor
@@ -135,10 +136,8 @@ def _recorded(
         if rng.integers(2):  # else the gyroscope alone stands still
             force[stuck] = force[stuck.start]
     columns = {"t_us": np.round(np.arange(n) * 1e6 / hz).astype(np.int64)}
-    words = {"g": gyro * _SCALES["gyro_lsb_per_dps"], "a": force * _SCALES["accel_lsb_per_g"]}
-    for letter, values in words.items():
-        whole = np.clip(np.round(values), -32768, 32767).astype(np.int64)
-        columns |= {letter + axis: whole[:, i] for i, axis in enumerate("xyz")}
+    columns |= counts("g", gyro * _SCALES["gyro_lsb_per_dps"])
+    columns |= counts("a", force * _SCALES["accel_lsb_per_g"])
     columns["temp"] = np.round((warm - 36.53) * 340.0).astype(np.int64)
     return Recording(columns, Scales("MPU-6050", hz, **_SCALES, **_TEMP), name)
 

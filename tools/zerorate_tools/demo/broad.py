@@ -23,6 +23,7 @@ from ..peers import first_seconds, given, vqf_default
 from ..recordings import Recording, Scales
 from ..replay import AT_REST_ALONE, replay
 from ..runtimes.runtime import cache_folder
+from ..simulate.device import counts
 
 Array = NDArray[np.float64]
 _G = 9.81
@@ -63,13 +64,8 @@ class Trial:
     def recording(self) -> Recording:
         """The trial in raw LSB at +-1000 dps and +-16 g."""
         t_us = np.round(np.arange(len(self.rate_dps)) * 1e6 / self.hz).astype(np.int64)
-        columns = {"t_us": t_us}
-        for letter, values, scale in (
-            ("g", self.rate_dps, _SCALES["gyro_lsb_per_dps"]),
-            ("a", self.accel_g, _SCALES["accel_lsb_per_g"]),
-        ):
-            words = np.clip(np.round(values * scale), -32768, 32767).astype(np.int64)
-            columns.update({letter + axis: words[:, i] for i, axis in enumerate("xyz")})
+        columns = {"t_us": t_us, **counts("g", self.rate_dps * _SCALES["gyro_lsb_per_dps"])}
+        columns |= counts("a", self.accel_g * _SCALES["accel_lsb_per_g"])
         named: dict[str, Any] = {**_SCALES, "temp_lsb_per_degc": 0, "temp_offset_degc": 0}
         scales = Scales("aktos-t", self.hz, **named)
         return Recording(columns, scales, self.name)

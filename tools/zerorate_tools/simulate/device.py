@@ -97,7 +97,7 @@ def _measured(
             zero_rate += added
     t_us, rate = _timed(described, world, rate, seed)
     readings = rate + zero_rate + white_dps(described, world, seed)
-    columns = {"t_us": t_us, **_counts("g", readings * sensor.gyro_lsb_per_dps)}
+    columns = {"t_us": t_us, **counts("g", readings * sensor.gyro_lsb_per_dps)}
     columns |= _surroundings(sensor, world, stream(seed, number, "accelerometer"))
     columns |= _channel_columns(world, seed)
     name = described.name if len(described.sessions) == 1 else f"{described.name}-{number}"
@@ -131,9 +131,10 @@ def _timed(
     return np.rint(stamps * 1e6).astype(np.int64), rate_dps
 
 
-def _counts(letter: str, values_lsb: np.ndarray) -> dict[str, np.ndarray]:
-    counts = np.clip(np.rint(values_lsb), -32768, 32767).astype(np.int32)
-    return {letter + axis: counts[:, i] for i, axis in enumerate("xyz")}
+def counts(letter: str, values_lsb: np.ndarray) -> dict[str, np.ndarray]:
+    """The columns of three axes, as words of 16 bits."""
+    words = np.clip(np.rint(values_lsb), -32768, 32767).astype(np.int32)
+    return {letter + axis: words[:, i] for i, axis in enumerate("xyz")}
 
 
 def _surroundings(sensor: Sensor, world: World, rng: np.random.Generator) -> dict[str, np.ndarray]:
@@ -142,7 +143,7 @@ def _surroundings(sensor: Sensor, world: World, rng: np.random.Generator) -> dic
     if sensor.accel:
         shaken = rng.standard_normal((n, 3)) * (sensor.accel_noise_g * quieter)
         force = world.accel_g + shaken + axes(sensor.accel_bias_g)
-        columns |= _counts("a", force * sensor.accel_lsb_per_g)
+        columns |= counts("a", force * sensor.accel_lsb_per_g)
     if sensor.temp:
         read = lagged(world.temp_degc, sensor.temp_lag_s, world.dt_s)
         read = read + rng.standard_normal(n) * (sensor.temp_noise_degc * quieter)

@@ -15,9 +15,8 @@ from ..boards.connection import BoardError, listening
 from ..ending import noted_signals
 from ..recordings import Recording, Scales
 from ..recordings.recording import TIME, Columns
-from ..replay.bias_table import SOURCES
 from ..replay.engines import CPythonEngine, Engine, Outcome, engine
-from ..replay.replaying import corrector_for, load_model
+from ..replay.replaying import SOURCES, corrector_for, load_model
 from ..replay.samples import Frames, frames_of
 from .screen import WatchOptions, screen
 

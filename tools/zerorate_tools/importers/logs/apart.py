@@ -17,7 +17,7 @@ from ...bounds import ALONE, MEMORY_MB, how_it_ended, limit_myself, python_child
 from ...errors import BadRecording, MissingLibrary
 from ..samples.spool import PLACE
 from ..tables.table import Chunk, Table
-from . import arrays, flight_logs, json_file, mcap_file, ros_bag
+from . import arrays, flight_logs, json_file, ros_bag
 
 _WORDS_BYTES = 65_536
 _ABOUT, _READ = b"about", b"read"
@@ -28,7 +28,7 @@ _READERS = {
     "dataflash": (flight_logs.dataflash, "DataFlash log"),
     "blackbox": (flight_logs.blackbox, "blackbox log"),
     "ros_bag": (ros_bag.read, "ROS bag"),
-    "mcap_file": (mcap_file.read, "MCAP file"),
+    "mcap_file": (ros_bag.mcap, "MCAP file"),
     "matlab": (arrays.matlab, ".mat file"),
     "hdf5": (arrays.hdf5, "HDF5 file"),
     "numpy_file": (arrays.numpy_file, "NumPy file"),
