@@ -5,8 +5,7 @@ import pytest
 from zerorate_bench import deceived
 from zerorate_bench.accuracy import second_power_on
 from zerorate_bench.cost_report import replay_speed
-from zerorate_bench.deceived import judged, made
-from zerorate_bench.deceived_worlds import WORLDS
+from zerorate_bench.deceived import WORLDS, judged, made
 from zerorate_bench.heading_simulated import Case, outcome
 from zerorate_bench.limits import COST, verdicts
 from zerorate_bench.own_axes import one_device

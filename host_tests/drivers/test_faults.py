@@ -1,7 +1,7 @@
 """Every fault of a real bus: an error passes or the chip is set up again, nothing false given."""
 
 import pytest
-from zerorate_bench.bus_faults import FAULTS, run_fault
+from zerorate_bench.faults import FAULTS, run_fault
 from zerorate_fakes import FakeMPU6050
 from zerorate_fakes.pins import BusWires
 from zerorate_i2c.bus_recovery import free_bus
