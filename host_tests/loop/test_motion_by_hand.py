@@ -177,6 +177,12 @@ def test_a_matrix_is_found_where_some_of_it_is_seen_and_a_heading_is_hardly_wors
     shown = by_windows.RateScale(*large, np.ones(2), 2.0, 1.0, unit, 40, *seen, 1.0)
     monkeypatch.setattr(by_windows, "heading_lost", lambda judged: (6.0, after))
     assert by_windows._judged_by_heading(shown, [], []).found is found
+    lost = iter([None, (6.0, after)])  # what was left out sees no stretch of a heading
+    monkeypatch.setattr(by_windows, "heading_lost", lambda judged: next(lost))
+    fitted = by_windows._judged_by_heading(shown, [], [])
+    assert fitted.found is found and (f"{after:.2f} degrees" in "".join(fitted.notes)) is (
+        after in (6.2, 6.01)
+    )
     assert f"sees 1.23 {unit}" in by_windows.seen_in_words(1.234, unit)
 
 

@@ -24,8 +24,9 @@ class RateScale:
     bool, entries
     that the motion did not show; level: of p; share: how much of the matrix is deployed; heading:
     degrees a minute lost against an attitude that was given, without and with the matrix of what
-    was left out; unused: names of recordings whose attitude shows less than gravity; by_others: of
-    several recordings without a holdout, what would be deployed by all but the one named.
+    was left out; worse: of that, or of what was fitted, where it forbids the matrix; unused: names
+    of recordings whose attitude shows less than gravity; by_others: of several recordings without a
+    holdout, what would be deployed by all but the one named.
     """
 
     matrix: np.ndarray
@@ -43,6 +44,7 @@ class RateScale:
     level: float
     share: float = 1.0
     heading: tuple[float, float] | None = None
+    worse: tuple[float, float] | None = None
     unused: tuple[str, ...] = ()
     by_others: Mapping[str, np.ndarray] = field(default_factory=dict)
 
@@ -67,8 +69,8 @@ class RateScale:
         """What an attitude forbids, or why it was not used, a sentence each."""
         why = "gravity shows more of the axes than the reference given, which was left out"
         said = [f"{', '.join(self.unused)}: {why}"] if self.unused else []
-        if self.heading is not None and not self.found:
-            before, after = self.heading
+        if self.worse is not None:
+            before, after = self.worse
             lost = f"heading would lose {after:.2f} degrees a minute against the attitude"
             said.append(f"the matrix is not deployed: {lost}, {before:.2f} without it")
         return said
@@ -118,9 +120,10 @@ def _judged_by_heading(shown: RateScale, train: list[Moving], holdout: list[Movi
     """With what the heading gains in what was left out, and in what was fitted."""
     heading = heading_lost(list(_left_out(shown, train, holdout)))
     fitted = heading_lost([(m, shown.deployed) for m in train])
-    most = _NO_WORSE[shown.reference]
-    gains = [most * before - after for before, after in filter(None, (heading, fitted))]
-    return replace(shown, heading=heading, gains=np.r_[shown.gains, gains])
+    told = [lost for lost in (heading, fitted) if lost is not None]
+    gains = [_NO_WORSE[shown.reference] * before - after for before, after in told]
+    worse = next((lost for lost, gain in zip(told, gains) if gain <= 0), None)
+    return replace(shown, heading=heading, worse=worse, gains=np.r_[shown.gains, gains])
 
 
 def _left_out(shown, train, holdout) -> Iterator[tuple[Moving, np.ndarray]]:

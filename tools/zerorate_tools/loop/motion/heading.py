@@ -54,9 +54,9 @@ def _lost(one: Moving, matrix: NDArray) -> NDArray[np.float64]:
 
 
 def _stretches(one: Moving, seen: NDArray) -> list[tuple[int, int]]:
-    """First and last sample of stretches that move, one after the other, seen at both ends."""
+    """First and last sample of stretches that move, each a quarter on, seen at both ends."""
     n = round(_STRETCH_S / one.dt_s)
-    every = [(a, a + n) for a in range(0, len(one.rate) - n, n)]
+    every = [(a, a + n) for a in range(0, len(one.rate) - n, n // 4)]
     spread = [np.degrees(np.sqrt(one.rate[a:b].var(axis=0).sum())) for a, b in every]
     whole = [abs(one.at_s[b] - one.at_s[a] - _STRETCH_S) < 1.0 for a, b in every]
     return [
