@@ -22,6 +22,8 @@ NOISE = np.random.default_rng(4).normal(size=(50, 6)) * [0.01, 0.02, 0.01, 0.1, 
 UNNAMED_DATES = "\n".join(f"2026-05-01   10:00:{i // 5:02d} 0.8  0.8   0.9" for i in range(50))
 NINE = np.tile(NOISE[:, :3], 3) * np.repeat([9, 1, 9], 3) + [0.8, -0.5, 0.3, 0, 0, 1, 20, -5, 40]
 WITH_A_RATE = "// Sample rate: 50.0Hz\nGyr_X;Gyr_Y;Gyr_Z\n" + "0.1;0.2;0.3\n" * 20
+SHAKEN = rates("t_s gx_dps gy_dps gz_dps ax ay az".split(), 500)
+SHAKEN[["ax", "ay", "az"]] = [0.5, 0.0, 11.0] + 5.0 * np.sin(np.outer(np.arange(500), [1, 2, 3]))
 TENS = np.arange(0, 5000, 10)
 TURNED = pd.DataFrame({"t_s": TENS / 1e3, "gx": np.sin(TENS), "gy": 0.0, "gz": np.cos(TENS)})
 LISTS = pd.DataFrame({"t_s": np.arange(300) / 100, "pulse": 70, "gyro": "[0.8, -0.5, 0.3]"})
@@ -65,6 +67,8 @@ LISTS = pd.DataFrame({"t_s": np.arange(300) / 100, "pulse": 70, "gyro": "[0.8, -
          r"called 1, 2, 3, ...\); map it: --map gx=COLUMN:UNIT"),
         (UNNAMED_DATES, {}, "--map t_us=2:s --map gx=3 --map gy=4 "),
         (lines(NOISE + [49.0, 0, 0, 0, 0, 0]), {}, "map it: --map gx=COLUMN:UNIT.* one of 1, 2, 3"),
+        (SHAKEN, {}, "give --accel-unit m/s2 [(]or g, mg"),
+        (SHAKEN, {"units": {"accel": "g"}}, "mean m/s2[?] Give --accel-unit m/s2; else map other"),
         (WITH_A_RATE, {}, "--gyro-unit dps .*, --hz 50 [(]as the file says[)]"),
         (WITH_A_RATE, {"units": {"gyro": "dps"}}, "time stamps; give --hz 50 [(]as the file says"),
         (LISTS, {}, "COLUMN one of t_s, pulse; gyro: no number alone"),
@@ -74,7 +78,7 @@ LISTS = pd.DataFrame({"t_s": np.arange(300) / 100, "pulse": 70, "gyro": "[0.8, -
          "give --hz, samples a second, or --map t_us=ticks:ms if it is a time"),
         (table(500).assign(t_s=range(500)).rename(columns={"t_s": "time"}), {},
          "--time-unit s .*; or --hz, rows a second, if it counts them"),
-        ("t_s,gx_dps,gy_dps,gz_dps,ax,ay,az\n0,1,1,1,2.5,2.5,0", {}, "--accel-unit g [^-]*$"),
+        ("t_s,gx_dps,gy_dps,gz_dps,ax,ay,az\n0,1,1,1,2.5,2.5,0", {}, "--accel-unit m/s2 [^-]*$"),
         (table(500).assign(az_g=0.1), {}, "map other columns, or leave it out by --map ax=none"),
         (table(500).rename(columns={"t_s": "min.timestamp"}), {}, r"--time-unit s \(100 Hz\)"),
         (table(500).rename(columns={"t_s": "time"}).assign(time="May 1st, at noon"), {},

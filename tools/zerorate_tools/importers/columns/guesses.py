@@ -348,7 +348,9 @@ def _likely(target: str, wanted: Mapping[str, Mapped], first: Mapping[str, np.nd
     unit = wanted["ax"].unit or unit_in_name("ax", wanted["ax"].column)
     unit = unit or _by_gravity(wanted, first)[0]
     if target in ACCEL:
-        return unit or ("lsb" if counted else "g")
+        usual = max(_usual_length([first[wanted[axis].column] for axis in ACCEL]), 1e-12)
+        near = min(GRAVITY, key=lambda u: abs(np.log(usual / GRAVITY[u])))
+        return unit or ("lsb" if counted else near)
     # those who keep to one system of units keep to it for both
     likely = {"m/s2": "rad/s", None: "lsb" if counted else "dps", "lsb": "lsb"}.get(unit, "dps")
     # one unit for the three, by the fastest
