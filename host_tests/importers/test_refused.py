@@ -112,6 +112,11 @@ def test_a_table_that_cannot_be_imported_says_what_to_do(tmp_path, frame, how, s
     assert "\n" not in str(caught.value)
 
 
+def test_a_limb_that_swings_is_pushed_along_itself(tmp_path):
+    swung = SHAKEN.assign(az=SHAKEN.az - 9.5)
+    assert read(tmp_path, swung, units={"accel": "g"})
+
+
 @pytest.mark.parametrize(
     ("words", "complaint"),
     [

@@ -97,8 +97,8 @@ def of_time(temp_degc: np.ndarray, span_us: float, counted: bool) -> list[str]:
 
 def _refuse_gravity(seen: dict[str, np.ndarray], plan: Plan, scales: Scales, path: Path) -> None:
     """Who ends not much faster than he began was pushed by 1 g on the average, however he moved:
-    the usual length of the force is no less, and where it never changes no more. Nor is its mean
-    over an eighth of the time, in which what shakes it averages out."""
+    the usual length of the force is no less, and where it never changes no more. A limb that swings
+    is pushed along itself by some g, too, but by no other unit's."""
     if "ax" not in seen or np.ptp(seen["t_us"]) < _GRAVITY_FROM_US:
         return
     lsb = scales.accel_lsb_per_g or 1.0
@@ -107,13 +107,15 @@ def _refuse_gravity(seen: dict[str, np.ndarray], plan: Plan, scales: Scales, pat
     force = np.linalg.norm(pushes, axis=0)
     usual = float(np.median(force)) if len(force) else 1.0
     low, high = np.quantile(force, [0.25, 0.75]) if len(force) else (1.0, 1.0)
-    means = [np.linalg.norm(part.mean(axis=1)) for part in _eighths(pushes)]
-    most = usual if high - low < _STEADY_G * usual else float(np.median(means or [1.0]))
-    if _LEAST_G <= usual and most <= _MOST_G:
+    off = usual < _LEAST_G or usual > _MOST_G and high - low < _STEADY_G * usual
+    if not off and "accel" not in plan.raw:
+        # what shakes it averages out
+        usual = float(np.median([np.linalg.norm(x.mean(axis=1)) for x in _eighths(pushes)] or [1]))
+        off = usual > _MOST_G and bool(_meant(usual, plan, lsb))
+    if not off:
         return
-    off = usual if usual < _LEAST_G else most
-    problem = f"the usual acceleration is {off:.3g} g, and gravity alone is 1 g"
-    do = f"{_meant(off, plan, lsb)}map other columns, or leave it out by"
+    problem = f"the usual acceleration is {usual:.3g} g, and gravity alone is 1 g"
+    do = f"{_meant(usual, plan, lsb)}map other columns, or leave it out by"
     raise BadRecording(path, problem, do=f"{do} --map ax=none")
 
 
