@@ -57,7 +57,7 @@ def test_what_is_left_of_pieces_is_the_root_of_all_axes_squares(answers, left, d
 @pytest.mark.parametrize(("count", "at", "fitted"), [(1, 0, [0]), (2, 1, [0]), (3, 0, [1, 2])])
 def test_what_is_fitted_is_what_is_not_held_out(monkeypatch, answers, three, count, at, fitted):
     every, asked = three[:count], []
-    selection = SimpleNamespace(straight=[], terms=[], found=[])
+    selection = SimpleNamespace(straight=[], terms=[], found=[], regression=None)
     pruned = selection, SimpleNamespace(whole=None)
     answers(loop, prune_by_holdout=pruned, deployed=([], None))
     answers(loop, floor_dps=None, name_earth=None, periodic=None)

@@ -110,7 +110,7 @@ def test_chances_are_those_of_the_nats_and_the_least_are_not_told():
     [
         ("linear-acceleration", 0.002, True, ["earth-rotation"]),
         ("squared-acceleration", 0.002, True, ["earth-rotation"]),
-        ("linear-acceleration", 0.5, True, []),
+        ("linear-acceleration", 50.0, True, []),
         ("vibration", 0.002, True, []),
         ("linear-acceleration", 0.002, False, []),
     ],
@@ -123,5 +123,6 @@ def test_earth_is_named_beside_what_follows_a_pose_and_is_no_larger(
         s.earth = Earth(np.zeros((s.blocks, 3)), 0.004, "") if known else None
     pose = Term("acc_x")
     effect = found(pose, kind=kind)
-    naming.name_earth([effect], [B, pose], np.array([[9.0] * 3, [dps, 0, 0]]), sessions)
+    deployed = np.array([[9.0] * 3, [dps, 0, 0]])
+    naming.name_earth([effect], [B, pose], deployed, Regression(sessions))
     assert effect.confounded_with == named

@@ -112,9 +112,15 @@ def test_of_earths_rate_what_gravity_and_attitude_tell_is_known(attitude, more, 
     assert earth.unknown_dps == pytest.approx(EARTH_DPS * unknown)
 
 
-@pytest.mark.parametrize(("dps_per_g", "may_be"), [(0.004, True), (0.02, False)])
-def test_a_small_effect_of_acceleration_may_be_earth(dps_per_g, may_be):
-    assert can_be_earth(np.vstack([UP, -UP]) * dps_per_g, EARTH_DPS) is may_be
+@pytest.mark.parametrize(
+    ("dps_per_g", "sigma", "may_be"),
+    [(0.004, 0.0, True), (0.0043, 0.0, False), (0.0043, 0.0001, True), (0.0043, 0.00001, False)],
+    ids=["as Earth", "more", "as far as is known as Earth", "more by far more than its sigma"],
+)
+def test_a_small_effect_of_acceleration_may_be_earth(dps_per_g, sigma, may_be):
+    """UP and back differ by 2 g, and so does their effect, by 2 times what three sigma are."""
+    covariance = np.tile(sigma**2 * np.eye(3), (3, 1, 1))
+    assert can_be_earth(UP, dps_per_g * np.eye(3), covariance, EARTH_DPS) is may_be
 
 
 WARMING = 20 + 8 * (1 - np.exp(-np.arange(3600) / 400))

@@ -110,7 +110,7 @@ def _look(
     whole = [*selection.straight, *selection.terms]
     floor = floor_dps(judgement.whole, whole)
     terms, coefficients = deployed(selection)
-    name_earth(selection.found, terms, coefficients, train)
+    name_earth(selection.found, terms, coefficients, selection.regression)
     lines = periodic(train, held, terms, coefficients)
     return Analysis(sessions, train, held, selection, judgement, floor, gate, motion, lines)
 

@@ -16,7 +16,7 @@ EARTH_DPS = float(np.linalg.norm(earth_rate_dps(0.0)))
 ATTITUDE, LATITUDE = "attitude", "latitude_deg"
 ROTATION = "earth-rotation"
 _POSES = 100
-_UNSURE = 1.25  # what a fit may add to the most that Earth does
+_SURE = 3.0
 
 
 @dataclass(frozen=True)
@@ -62,12 +62,21 @@ def _attitude(ticks: Ticks) -> np.ndarray | None:
     return np.broadcast_to(q / np.linalg.norm(q), (len(ticks.count), 4))
 
 
-def can_be_earth(effect_dps: np.ndarray, unknown_dps: float) -> bool:
-    """Whether an effect of acceleration is no larger than the unknown part of Earth's rate can be.
+def can_be_earth(
+    poses: np.ndarray, coefficients: np.ndarray, covariance: np.ndarray, unknown_dps: float
+) -> bool:
+    """Whether an effect of acceleration is no larger than the unknown part of Earth's rate may
+    be.
 
-    effect_dps: (n, 3) what it adds in the poses that were seen. The difference between any two of
-    them is compared with twice that part, which a part turned over can see.
+    poses: (n, k) its bases in the poses that were seen; coefficients: (k, 3) dps per unit;
+    covariance: (3, k, k) of them. The difference between any two poses, less three sigma of it, is
+    compared with twice that part, which a part turned over can see.
     """
-    some = effect_dps[:: max(1, len(effect_dps) // _POSES)]
-    apart = np.linalg.norm(some[:, None] - some[None], axis=2).max()
-    return bool(apart <= 2.0 * _UNSURE * unknown_dps)
+    some = poses[:: max(1, len(poses) // _POSES)]
+    apart = some[:, None] - some
+    effect = apart @ coefficients
+    size = np.linalg.norm(effect, axis=2)
+    spread = np.einsum("mnk,akl,mnl->mna", apart, covariance, apart)
+    along = effect / np.maximum(size, 1e-300)[..., None]
+    sigma = np.sqrt(np.maximum((along**2 * spread).sum(axis=2), 0.0))
+    return bool((size - _SURE * sigma).max() <= 2.0 * unknown_dps)

@@ -7,11 +7,12 @@ import numpy as np
 from scipy.special import logsumexp
 
 from ...model.effects import is_free
-from ...model.term import Terms
+from ...model.term import Term, Terms
 from ..fit.free_curve import parts
 from ..fit.line import is_slope
-from ..fit.regression import Regression, predicted
+from ..fit.regression import Regression
 from ..read.earth import ROTATION, can_be_earth
+from ..read.sessions import block_basis
 from .catalogue import Candidate
 from .decide import LEVEL
 from .refine import drawn, refined
@@ -57,20 +58,29 @@ def _named(regression, rest, candidate):
     return named(candidate, fit.coefficients[len(rest) :])
 
 
-def name_earth(found: list, terms: list, coefficients: np.ndarray, sessions: list) -> None:
+def name_earth(
+    found: list[Found], terms: list[Term], coefficients: np.ndarray, regression: Regression
+) -> None:
     """Add Earth's rotation to what an effect of acceleration is confounded with, where it can be.
 
-    found: `select.Found`; terms, coefficients (terms, 3) dps per unit: all that is deployed.
+    terms, coefficients (terms, 3) dps per unit: all that is deployed of what was fitted.
     """
-    if any(s.earth is None for s in sessions):
+    sessions = regression.sessions
+    of_pose = [f for f in found if f.candidate.kind in _OF_POSE]
+    unknown = [s.earth.unknown_dps for s in sessions if s.earth is not None]
+    if not of_pose or len(unknown) < len(sessions):
         return
-    unknown = max(s.earth.unknown_dps for s in sessions)
-    for f in found:
-        if f.candidate.kind in _OF_POSE:
-            rows = np.array([coefficients[terms.index(t)] for t in f.candidate.terms])
-            effect = [predicted(f.candidate.terms, rows, s)[s.available] for s in sessions]
-            if can_be_earth(np.vstack(effect), unknown):
-                f.rivals[ROTATION] = 0.0  # it turns with the pose alike
+    with regression.in_sensor_axes():
+        base = regression.fit(terms).base
+    for f in of_pose:
+        at = [terms.index(t) for t in f.candidate.terms]
+        covariance = base.variance[:, None, None] * base.unscaled[:, at][..., at]
+        poses = [
+            np.column_stack([block_basis(t, s)[s.available] for t in f.candidate.terms])
+            for s in sessions
+        ]
+        if can_be_earth(np.vstack(poses), coefficients[at], covariance, max(unknown)):
+            f.rivals[ROTATION] = 0.0  # it turns with the pose alike
 
 
 def posterior(regression, terms, chosen, candidates, ratios) -> list[tuple[Candidate, float]]:
