@@ -95,7 +95,8 @@ def _how_alike(name: str, one: Any, other: Any) -> str:
         return f": if it is the same part, import the other with --sensor {part}"
     if "_lsb_" not in name or None in (one, other):
         return ""
-    return f": if only the imports differ, import both with --{name.replace('_', '-')} N"
+    option = f"--{name.replace('_', '-')} {min(one, other):g}"
+    return f": if only the imports differ, import both with {option}"
 
 
 def readable(ticks: list[Ticks]) -> None:
