@@ -258,13 +258,15 @@ WITHOUT, WITH = "without the matrix", "with the matrix"
 @dataclass(frozen=True)
 class Won:
     """turned: degrees a minute of windows left out, without and with; unit: what turns them;
-    heading: the same of heading against the given attitude, None without one; deployed: whether
-    `close` would deploy it; refused: why the logs are not of one device, "" where they are.
+    heading: the same of heading against the attitude given, None where it was not judged; attitude:
+    whether a log has one; deployed: whether `close` would deploy it; refused: why the logs are not
+    of one device, "" where they are.
     """
 
     turned: tuple[float, float] = (float("nan"), float("nan"))
     unit: str = UNIT[GRAVITY]
     heading: tuple[float, float] | None = None
+    attitude: bool = False
     deployed: bool = False
     refused: str = ""
 
@@ -288,7 +290,7 @@ class Won:
         if self.refused:
             return []
         names = (WITHOUT, WITH) if self.deployed else (WITHOUT,)
-        none = "no attitude" if self.unit == UNIT[GRAVITY] else ""
+        none = "" if self.attitude else "no attitude"
         headings = [f"{h:.2f}" for h in self.heading] if self.heading else [none] * 2
         head = (HEAD, self.unit.rpartition(" ")[2], "heading", "")
         return [head, *((n, f"{t:.2f}", h, "") for n, t, h in zip(names, self.turned, headings))]
@@ -299,11 +301,13 @@ def matrix_of(logs: Sequence[str | Path]) -> Won | None:
 
     Raises BadRecording.
     """
+    moving = [m for log in logs if (m := moving_of(log)) is not None]
     try:
-        shown = by_windows([m for log in logs if (m := moving_of(log)) is not None], [])
+        shown = by_windows(moving, [])
     except CannotClose as problem:
         return Won(refused=str(problem))
     if shown is None:
         return None
     heading = shown.heading if shown.found else None
-    return Won((shown.before, shown.after), shown.unit, heading, shown.found)
+    attitude = any(m.given is not None for m in moving)
+    return Won((shown.before, shown.after), shown.unit, heading, attitude, shown.found)
