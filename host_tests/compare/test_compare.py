@@ -111,23 +111,6 @@ def test_five_rests_and_more_show_by_their_scatter_what_is_chance():
     assert word(1.0, 1.0, 1.02 * third, 0.0, 0.0) == word(1.0, 1.0, 0.0, 0.0) == "better"
 
 
-@pytest.mark.parametrize(
-    ("mine", "theirs", "rests", "said", "at"),
-    [
-        (0.1, 0.25, 2, "2.5 times better than", "2 later rests"),
-        (0.2, 0.1, 1, "2.0 times worse than", "1 later rest"),
-    ],
-)
-def test_the_headline_says_by_how_much_one_is_better_and_at_how_many_rests(
-    mine, theirs, rests, said, at
-):
-    compared = told(np.full((rests, 3), [0.0, 0.0, theirs]))
-    compared.error_dps[FRESH] = np.full((rests, 3), [0.0, 0.0, mine])
-    lost = f"{60 * mine:.2f} deg of heading a minute, and the mean {60 * theirs:.2f}."
-    said += f" the mean of the first rest. At {at} it would have lost {lost}"
-    assert compared.headline() == f"{FRESH}: {said}"
-
-
 @pytest.mark.parametrize(("down", "lost"), [((0.0, 0.6, 0.8), (0.32, 0.06)), (None, (0.4, 0.0))])
 def test_heading_is_lost_about_the_vertical_or_the_worst_axis_where_nobody_knows_it(down, lost):
     compared = told(np.array([[0.3, 0.0, 0.4], [0.0, 0.1, 0.0]]), down=down)

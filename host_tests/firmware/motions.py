@@ -1,21 +1,14 @@
-"""Simulated motion for the two sources that learn without rest, in raw LSB with its true bias.
+"""Simulated motion for the two sources that learn without rest, in raw LSB with its true bias."""
 
-And words of the source in motion as vectors and turns.
-"""
-
-from array import array
 from itertools import accumulate
 from operator import mul
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 from scipy.spatial.transform import Rotation
-from zerorate.motion.motion_settings import motion_settings
 
 GYRO_LSB_PER_DPS = 131.0
 ACCEL_LSB_PER_G = 16384.0
-SETTINGS = motion_settings()
-Q14, Q12 = 1 << 14, 4096
 
 
 class Motion:
@@ -103,12 +96,3 @@ class Fed:
 
     def errors_mdps(self, bias_dps, after_s=0.0):
         return np.array([1000 * (b - bias_dps) for t, b, _ in self.learned if t >= after_s])
-
-
-def put_words(state, at, values):
-    state[at : at + len(values)] = array("i", [int(round(v)) for v in values])
-
-
-def rotation_at(state, at):
-    w, *xyz = state[at : at + 4]
-    return Rotation.from_quat([*xyz, w])

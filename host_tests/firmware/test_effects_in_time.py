@@ -85,25 +85,6 @@ def test_a_model_of_before_follows_its_channel_once_a_tick():
     assert np.abs(got[A_TICK - 1 :: A_TICK, 0][1:] - wanted).max() < 5e-5
 
 
-def test_no_sample_computes_more_than_its_share(warm_up, monkeypatch):
-    slots = [Slot(Term("temp", 0.0, 60.0, 30.0, power=2), (0.001, 0, 0))] * 8
-    model = loaded(slots, sensor=Sensor(100.0))
-    counted = []
-    plain = effects.basis
-    monkeypatch.setattr(effects, "basis", lambda e, a: counted.append(a) or plain(e, a))
-    frame, state, most = (
-        array("i", [0, 0, 16384, 0, 0, 0, 0]),
-        array("i", [0] * STATE.FIT_WEIGHTS),
-        0,
-    )
-    for _ in range(500):
-        before = len(counted)
-        effects.sense(state, model.e, frame, 10000, 1)
-        most = max(most, len(counted) - before)
-    # once for the first sample, which speaks for the first tick, and once for each of four ticks
-    assert (most, len(counted)) == (1, 8 * 5)
-
-
 def test_the_first_sample_speaks_until_the_first_tick_ends():
     slots = [Slot(Term("temp", 0, 60, 20), (0.1, 0, 0)), Slot(Term("time", 0, 100), (0, 0.1, 0))]
     model = loaded(slots, sensor=Sensor(100.0))

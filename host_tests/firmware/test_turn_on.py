@@ -250,17 +250,6 @@ def test_what_a_restarted_program_knew_of_a_chip_under_power_is_as_sure_as_it_wa
     assert quality_dps(corrector) < before + 0.001
 
 
-def test_a_part_whose_bias_wanders_at_rest_is_less_sure_than_one_with_white_noise_alone():
-    frames = rest(600, bias_dps=BIAS_DPS)
-    white, _ = play(frames)
-    halves = np.repeat(np.random.default_rng(1).normal(0, 0.006, (len(frames) // 200, 3)), 200, 0)
-    frames[:, 4:] += halves * LSB
-    wandering, _ = play(frames)
-    for axis in range(2):  # no turn about them stays hidden
-        assert quality_dps(white, axis) < 0.005
-        assert 0.006 < quality_dps(wandering, axis) < 0.014
-
-
 def with_flicker_noise(frames, dps):
     noisy = frames.copy()
     noisy[:, 4:] += LSB * flicker(np.random.default_rng(1), len(frames), 0.01, np.full(3, dps))

@@ -34,7 +34,7 @@ from zerorate_tools.replay.replaying import (
     table,
 )
 from zerorate_tools.replay.samples import frames_in_batches
-from zerorate_tools.replay.state_in_words import Word, words_of_file
+from zerorate_tools.replay.state_in_words import words_of_file
 from zerorate_tools.simulate import simulate
 
 from ..golden.shown import InThisProcess
@@ -208,13 +208,6 @@ def test_a_state_whose_last_word_is_cut_has_the_words_before(tmp_path):
     state = bytes(corrector_for(recording_from_columns({}, Scales("a", 100.0, 131.0)), {}).state)
     (tmp_path / "s.bin").write_bytes(state + b"\1\2")
     assert len(words_of_file(tmp_path / "s.bin")) == len(state) // 4
-
-
-@pytest.mark.parametrize(
-    ("name", "raw", "shown"), [("BIAS_Q8", -256, "-1 "), ("N", 3, ""), ("SCALE_Q8", 512, "2 ")]
-)
-def test_a_value_is_shown_where_it_is_not_the_raw_one(name, raw, shown):
-    assert Word("state", 0, name, raw, "").shown == shown
 
 
 @pytest.mark.parametrize("name", ["o.csv", "o.txt", "o"])

@@ -64,13 +64,6 @@ def test_flicker_keeps_the_allan_deviation_flat_at_the_given_floor(m):
     assert allan_deviation(truth.bias_lsb / 1000, m) == pytest.approx(0.01, rel=0.25)
 
 
-def test_outliers_are_in_the_reading_and_not_in_the_truth():
-    loud = {"outlier_dps": 5.0, "outlier_per_hour": 600.0}
-    recording, truth = simulate(device(60, noise=loud))
-    assert (truth.bias_lsb == 0).all()
-    assert 400 < (recording.columns["gx"] != 0).sum() < 800
-
-
 @pytest.mark.parametrize("kind", ["swing", "stride", "wave", "hand"])
 def test_periodic_motion_returns_and_its_rates_integrate_to_the_attitude(kind):
     motion = [{"kind": "rest", "s": 5}, {"kind": kind, "s": 30, "dps": 60.0}]
@@ -247,16 +240,6 @@ def test_hysteresis_parts_heating_from_cooling():
     at = np.abs(truth.temp_degc - 35) < 0.01
     heating, cooling = added[:1800, 0][at[:1800]], added[1800:, 0][at[1800:]]
     assert heating == pytest.approx(-0.1) and cooling == pytest.approx(0.1)
-
-
-def test_scale_errors_are_in_the_reading_and_not_in_the_true_bias():
-    motion = [{"kind": "swing", "s": 60, "dps": 100.0, "axis": "x"}]
-    matrix = [[0.03, 0, 0], [0.01, 0, 0], [0, 0, 0]]
-    scale = {"kind": "scale", "matrix": matrix, "dps": 1.0}
-    recording, truth = simulate(device(1, 50.0, effect=[scale], **moved(motion)))
-    assert (truth.bias_lsb == 0).all()
-    rate = truth.rate_dps[:, 0]
-    assert recording.gyro_dps()[:, :2] == pytest.approx(np.c_[1.03 * rate, 0.01 * rate], abs=0.004)
 
 
 def test_an_effect_of_wanted_size_has_it_over_all_sessions():
