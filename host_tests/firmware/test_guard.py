@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from zerorate import Corrector, Sensor
 from zerorate.rest import guard
-from zerorate_tools.layout import GRAVITY, MOTION, MOTION_REASON, SETTINGS, STATE
+from zerorate_tools.layout import GRAVITY, MOTION, MOTION_REASON, STATE
 
 from . import motions
 from .motions import GYRO_LSB_PER_DPS
@@ -88,45 +88,6 @@ def test_a_temperature_that_moved_for_good_is_refused_once():
     _, outcome = play(frames)
     assert np.flatnonzero(outcome.verdict).tolist() == [3000]
     assert (outcome.verdict[3000:3001] == guard.TEMPERATURE_JUMP).all()
-
-
-BEFORE = [10, 20, 30, 40, 50, 60, 70]
-LEAP_US, JUMP_LSB = 5000, 400
-
-
-@pytest.mark.parametrize(
-    ("frame", "dt_us", "kind"),
-    [
-        ([0] * 7, 10, guard.ALL_ZERO),
-        ([-1] * 7, 10, guard.ALL_ONES),
-        ([0] * 7, 0, guard.ALL_ZERO),
-        ([1] * 7, 10, guard.GOOD),
-        (BEFORE, 10, guard.REPEAT),
-        (BEFORE, 0, guard.TIME_STOOD_STILL),
-        (BEFORE, -1, guard.TIME_STOOD_STILL),
-        (BEFORE, LEAP_US + 1, guard.TIME_LEAPT),
-        (BEFORE, 1, guard.REPEAT),
-        (BEFORE, LEAP_US, guard.REPEAT),
-        ([1, 2, 3, 40 + JUMP_LSB - 1, 5, 6, 7], 10, guard.GOOD),
-        ([1, 2, 3, 40 + JUMP_LSB, 5, 6, 7], 10, guard.TEMPERATURE_JUMP),
-        ([1, 2, 3, 40 - JUMP_LSB + 1, 5, 6, 7], 10, guard.GOOD),
-        ([1, 2, 3, 40 - JUMP_LSB, 5, 6, 7], 10, guard.TEMPERATURE_JUMP),
-        ([1, 2, 3, 40 + JUMP_LSB, 32767, 6, 7], 10, guard.TEMPERATURE_JUMP),
-        ([1, 2, 3, 40, 32767, 6, 7], 0, guard.TIME_STOOD_STILL),
-        ([1, 2, 3, 40, 32767, 6, 7], 10, guard.RAIL),
-        ([1, 2, 3, 40, 5, 32766, 7], 10, guard.GOOD),
-        ([1, 2, 3, 40, 5, -32768, 7], 10, guard.RAIL),
-        ([1, 2, 3, 40, 5, 6, -32767], 10, guard.GOOD),
-        ([1, 2, 3, 40, 5, 6, -32768], 10, guard.RAIL),
-        ([32767, -32768, 32767, 40, 5, 6, 7], 10, guard.GOOD),
-    ],
-)
-def test_a_frame_is_of_the_kind_that_comes_first(frame, dt_us, kind):
-    state, settings = array("i", [9] * 128), array("i", [0] * SETTINGS.size)
-    state[STATE.FRAME : STATE.FRAME + 7] = array("i", BEFORE)
-    state[STATE.TEMP] = BEFORE[3]
-    settings[SETTINGS.LEAP_US], settings[SETTINGS.JUMP_LSB] = LEAP_US, JUMP_LSB
-    assert guard.check(state, settings, array("i", frame), dt_us) == kind
 
 
 PASSED_HZ = 50.0
