@@ -85,40 +85,6 @@ def test_edges_increase_strictly_always(mode, readings):
         sound(made)
 
 
-@settings(max_examples=60, deadline=None)
-@given(readings=chunks, pair=st.integers(0, 6), bin=st.integers(0, 7))
-@pytest.mark.parametrize("share", [histogram.share_evenly, histogram.share_by_mean])
-def test_split_and_merge_preserve_count_and_sum(share, readings, pair, bin):
-    made = filled("document", readings)
-    if bin in (pair, pair + 1):
-        bin = (pair + 2) % 8
-    if made.widths[bin] < 2:
-        return
-    while made.counts[pair] + made.counts[pair + 1] > 0x3FFF:
-        histogram.halve(made.s, made.h, made.bins)
-    count, total = sum(made.counts), sum(made.sums)
-    histogram.merge(made.s, made.h, made.bins, pair)
-    bin -= 1 if pair < bin else 0
-    histogram.open_gap(made.s, made.h, made.bins, bin)
-    share(made.s, made.h, made.bins, bin)
-    assert (sum(made.counts), sum(made.sums)) == (count, total)
-    sound(made)
-
-
-@modes
-@settings(max_examples=60, deadline=None)
-@given(readings=chunks)
-def test_halving_loses_no_more_than_rounding(mode, readings):
-    made = filled(mode, readings)
-    counts, sums = made.counts, made.sums
-    histogram.halve(made.s, made.h, made.bins)
-    for before, after, total, left in zip(counts, made.counts, sums, made.sums):
-        assert after == before // 2
-        if after:
-            assert left / after == pytest.approx(total / before, abs=1 / after)
-    sound(made)
-
-
 @pytest.mark.parametrize("reading", [-32768, -20000, 20000, 32767])
 def test_a_reading_outside_is_ignored_by_option(reading):
     made = Histogram("ignoring")
