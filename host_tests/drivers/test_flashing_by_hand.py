@@ -224,15 +224,6 @@ def test_a_micropython_too_old_for_machine_code_is_told(mpy, architecture, told)
         assert float(re.search(r"(\d+) times", line)[1]) == pytest.approx(slower, abs=5)
 
 
-def test_a_dry_run_without_a_board_lists_what_any_board_would_get():
-    said = []
-    flashed = flashing.flash("/dev/no-such-port", dry_run=True, say=said.append)
-    assert "/dev/no-such-port: is not there" in said[0]
-    assert PurePosixPath("lib/zerorate_i2c/mpu6050.mpy") in flashed.files
-    assert f"{flashed.total:8d}  bytes" in said[-2]
-    assert "heap needed" in said[-1]
-
-
 @pytest.mark.parametrize("option", ["main", "model"])
 def test_a_file_that_is_not_there_is_one_line_before_anything_is_written(option):
     with pytest.raises(ZerorateError, match="nowhere.*: (no such file|cannot be read)"):

@@ -2,7 +2,6 @@
 
 import errno
 import fcntl
-import io
 import os
 import sys
 import time
@@ -67,34 +66,19 @@ def test_without_its_package_bench_says_what_to_install(monkeypatch, capsys):
 @pytest.mark.parametrize(
     ("same", "code"), [((True,) * 3, 0), ((False, True, True), 1), ((True, True, False), 1)]
 )
-def test_each_chapter_of_the_demo_is_read_while_the_next_is_made_and_1_says_that_states_differ(
-    stands_in, monkeypatch, same, code
-):
-    pipe, read = io.TextIOWrapper(io.BytesIO()), []
-    monkeypatch.setattr("sys.stdout", pipe)
+def test_1_says_that_states_of_the_demo_differ(stands_in, same, code):
     first, before, after = (SimpleNamespace(same_state=one) for one in same)
-    works = {"demo.first_power_on": first, "closing.close": None}
-    works |= {"demo.back_on_the_chip": (before, after)}
-    for name, result in works.items():
-        work = stands_in(f"zerorate_tools.{name}")
-        work.side_effect = lambda *a, result=result: (
-            read.append(pipe.buffer.getvalue().decode().split()[-1]) or result
-        )
+    stands_in("zerorate_tools.demo.first_power_on", first)
+    stands_in("zerorate_tools.demo.back_on_the_chip", (before, after))
     stands_in("zerorate_tools.demo.make_device", SimpleNamespace(logs=["l"]))
-    chapters = ["opening", "chapter_one", "chapter_two", "chapter_three", "compared", "ending"]
-    told = [stands_in(f"zerorate_tools.demo.story.{name}", name) for name in chapters]
-    for name in ("runtimes.find", "compare.compare", "compare.show.write_page"):
+    for name in ("closing.close", "runtimes.find", "compare.compare", "compare.show.write_page"):
         stands_in(f"zerorate_tools.{name}")
+    for name in ("opening", "chapter_one", "chapter_two", "chapter_three", "compared", "ending"):
+        stands_in(f"zerorate_tools.demo.story.{name}", name)
     draw = stands_in("zerorate_tools.demo.picture.draw_job")
     draw.side_effect = lambda *shown: shown[-1].touch()
-    Path("deep").mkdir()
-    Path("deep/model.json").touch()
-    assert cli.main(["demo", "--out", "deep", "--runtime", "x86"]) == code
-    pipe.flush()
-    assert pipe.buffer.getvalue().decode().split() == chapters and read == chapters[:3]
-    assert draw.call_args == call(first, before, after, ANY) and Path("deep/demo.png").exists()
-    ((files,), _) = told[-1].call_args
-    assert [path for path, _ in files] == [Path("deep/model.json"), Path("deep/demo.png")]
+    assert cli.main(["demo", "--out", "shown", "--runtime", "x86"]) == code
+    assert draw.call_args == call(first, before, after, ANY) and Path("shown/demo.png").exists()
 
 
 @pytest.mark.parametrize(("runtime", "fetched"), [("./mine", False), ("armhf", True)])
