@@ -1,6 +1,5 @@
 """`zerorate run` lives through what a Linux board does to it, and publishes to who asks."""
 
-import errno
 import json
 import os
 import resource
@@ -8,7 +7,6 @@ import signal
 import socket
 import sys
 import urllib.request
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -27,17 +25,13 @@ BIAS_DPS = (0.31, -0.19, 0.08)
 
 
 class CountedFile(FileStorage):
-    """A file that notes when it was written, by a board's clock, and may have no room."""
-
-    full = False
+    """A file that notes when it was written, by a board's clock."""
 
     def __init__(self, path, clock):
         super().__init__(path)
         self.clock, self.writes_us = clock, []
 
     def write_pieces(self, offset, pieces):
-        if self.full:
-            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
         super().write_pieces(offset, pieces)
         self.writes_us.append(self.clock.now_us)
 
@@ -137,30 +131,6 @@ def test_killed_at_a_chip_that_kept_its_power_it_takes_back_all_of_the_offset(bo
     assert restarted() == [8000, -4000, 2000]
     board.chip.power_up()
     assert restarted() == [4000, -2000, 1000]
-
-
-@pytest.mark.parametrize("number, do", [(errno.ENOENT, "ls /dev/i2c-"), (errno.EACCES, "-aG i2c")])
-def test_a_bus_that_cannot_be_opened_says_what_to_do_about_it(board, number, do):
-    def closed():
-        raise OSError(number, os.strerror(number), "/dev/i2c-7")
-
-    service = Service(replace(board.system, open_imu=closed), [])
-    board.said.clear()
-    service.step()
-    (line,) = board.said
-    assert line.startswith(f"bus: /dev/i2c-7: {os.strerror(number)}; ") and do in line
-
-
-@pytest.mark.parametrize("stays_full, end", [(True, "what was learned is lost"), (False, "kept")])
-def test_a_file_that_cannot_be_written_is_named_and_tried_again_at_the_end(board, stays_full, end):
-    board.file.full = True
-    board.live(20)
-    board.file.full = stays_full
-    board.service._keep_at_the_end()
-    _, refused, last = board.said
-    assert refused.startswith(f"{board.file.path}: cannot be written; free space on its disk")
-    assert "trying again every minute" in refused
-    assert last.startswith(board.file.path if stays_full else "kept") and end in last
 
 
 def test_restarts_write_once_an_hour_at_most_whatever_ends_them(tmp_path):

@@ -28,7 +28,7 @@ from zerorate_tools.model import (
 )
 from zerorate_tools.model.effects import EFFECTS, is_free, table_of
 from zerorate_tools.model.model import binding_of
-from zerorate_tools.model.model_in_words import basis_in_words, differences, in_words
+from zerorate_tools.model.model_in_words import basis_in_words, differences
 from zerorate_tools.model.term import Term, evaluate
 from zerorate_tools.recordings import Scales
 
@@ -354,24 +354,6 @@ def test_a_slot_in_words_says_each_of_its_steps():
         "load less 0, 700 s ago",
         "vdd_mv less 0, what is above 5",
         "load less 0, lagged by 30 s, fading from power-on with 60 s",
-    ]
-
-
-def test_a_model_in_words_says_for_what_it_is_and_where_each_slot_is_held():
-    assert in_words(build_model(SLOTS[3:5], SCALES, binding=BINDING)).splitlines() == [
-        "2 effect slots, 384 bytes, one tick in 1 s",
-        "for MPU-6050 at 100 Hz, 131 LSB/dps; chip id 0x68, gyro range code 0, "
-        "accel range code 0, filter code 3",
-        "the application gives: load",
-        "",
-        "1. effect: temp less 30 degC, through a table",
-        "   dps per unit, x y z: 0.1  0  0",
-        "   held outside 20..45 degC",
-        "   table: 0 0.25 0.5 0.7 1 0.5 0 -0.5 -1",
-        "",
-        "2. load: load less 100, 150 s ago, to the power of 2",
-        "   dps per unit, x y z: 1e-06  2e-06  -1e-05",
-        "   held outside 0..250",
     ]
 
 
