@@ -106,14 +106,6 @@ def test_the_wheel_carries_every_file_of_a_package_and_no_other(repository, buil
     assert carried == sources(repository, package)
 
 
-@pytest.mark.skipif(not shutil.which("make"), reason="there is no make")
-def test_making_a_wheel_fetches_no_more_than_that_needs(repository, tmp_path):
-    command = ["make", "-n", "wheel", f"VENV={tmp_path / 'none'}"]
-    done = subprocess.run(command, cwd=repository, capture_output=True, text=True, check=True)
-    assert "hatchling numpy pyarrow ziglang" in done.stdout
-    assert "-r requirements" not in done.stdout
-
-
 def test_the_sdist_has_what_a_checkout_needs_to_be_tested(built):
     with tarfile.open(built[0]) as archive:
         names = {name.partition("/")[2] for name in archive.getnames()}

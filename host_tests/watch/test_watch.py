@@ -23,7 +23,7 @@ from zerorate_tools.replay.replaying import state_bytes
 from zerorate_tools.simulate import simulate
 from zerorate_tools.watch import watch
 from zerorate_tools.watch.live import Live, OwnOutput
-from zerorate_tools.watch.screen import Area, Lines, WatchOptions, draw, screen
+from zerorate_tools.watch.screen import Area, Lines, WatchOptions, screen
 from zerorate_tools.watch.watching import CsvTail, Watcher, is_device
 
 DESCRIPTION = {
@@ -242,14 +242,6 @@ def test_what_a_board_explains_is_read_as_the_firmware_means_it(log):
     assert len(told.history) == 1
     told.feed(b"MPY: soft reboot\r\n")
     assert told.source == ["none"] * 3 and not told.history
-
-
-def test_a_picture_has_eight_hundred_by_four_hundred_and_fifty_points(tmp_path):
-    told = OwnOutput("port")
-    told.feed(b"before 1.0 2.0 3.0  after 0.5 0.5 0.5\n" * 2)
-    draw(told, tmp_path / "bias.png")
-    size = (tmp_path / "bias.png").read_bytes()[16:24]
-    assert [int.from_bytes(size[at : at + 4], "big") for at in (0, 4)] == [800, 450]
 
 
 @pytest.mark.parametrize("ends", [["--for", "0.5"], ["--once"]])
