@@ -15,10 +15,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from zerorate_tools.cli import main
-from zerorate_tools.commands.demo import get_ready
 from zerorate_tools.demo import broad, demo, story
 from zerorate_tools.demo.broad import WAYS, real, trials
-from zerorate_tools.errors import CannotFetch, MissingRuntime, ZerorateError
+from zerorate_tools.errors import CannotFetch, ZerorateError
 from zerorate_tools.recordings import write_recording
 from zerorate_tools.runtimes import node
 from zerorate_tools.simulate import simulate
@@ -45,13 +44,6 @@ def test_what_nobody_told_the_firmware_is_found_and_makes_it_several_times_bette
     assert sum(with_it[:3]) < sum(without) / 2
     assert "equal to the last bit" in said
     assert "Final states equal to those of this computer: yes." in said
-
-
-def test_an_interpreter_that_is_not_there_is_fetched(cache, monkeypatch):
-    monkeypatch.setenv("PATH", "")
-    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
-    with pytest.raises(MissingRuntime, match="Node.js"):
-        get_ready("wasm")
 
 
 NOBODY = "http://127.0.0.1:9/"
