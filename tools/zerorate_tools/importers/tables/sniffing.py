@@ -45,7 +45,7 @@ _UNIT = re.compile(
 #: What stands before names in a comment, and around each of YEI's: Data format: "%float(GyroX),...
 _BEFORE_NAMES, _PRINTED = re.compile(r'^[\w ]+:\s+"?'), re.compile(r'%\w+\((\w+)\)"?')
 _RATE = re.compile(
-    r"\b(?:sample|sampling|update|output|data)[ _]?(?:rate|frequency)\b"
+    r"\b(?:sample|sampling|acquisition|update|output|data)[ _]?(?:rate|frequency)\b"
     r"[^\d\n]{0,12}([\d.]*\d)\s*(k?)",
     re.I,
 )
