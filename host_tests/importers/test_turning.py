@@ -15,7 +15,8 @@ from zerorate_tools.importers import Options, import_recording
 from zerorate_tools.importers.columns.mapping import parsed_mapping
 from zerorate_tools.loop.read.gate import CannotClose
 from zerorate_tools.recordings import turning
-from zerorate_tools.recordings.turning import axes_of, dps_of_one
+from zerorate_tools.recordings.turning import axes_of, axes_words, dps_of_one
+from zerorate_tools.simulate.attitude import IDENTITY, integrate, into_body
 
 from .test_tables import read
 
@@ -244,3 +245,13 @@ def test_a_quotient_that_is_no_known_unit_is_refused_and_taken_by_its_size(tmp_p
     words = " ".join(f"g{axis}=gyro_{axis}:x{dps}" for axis in "xyz")
     recording, _ = read(tmp_path, plain(dps)[0], mapping=words)
     assert recording.gyro_dps().T == pytest.approx(rates, abs=0.1)
+
+
+@pytest.mark.parametrize(("swings_deg", "told"), [(40.0, "-x y z"), (4.0, None)])
+def test_axes_are_told_where_the_force_swings_by_more_than_pushes_do(swings_deg, told):
+    """A car leans out of its curve: the force swings against its roll."""
+    t_s = np.arange(3000) / 50
+    rates = swings_deg * np.sin(np.outer([2.0, 1.4, 0.9], t_s))
+    force = into_body(integrate(rates.T * [-1, 1, 1], 0.02, IDENTITY), np.array([0.0, 0.0, 1.0])).T
+    axes = axes_of(rates, force[:, : len(t_s)], t_s)
+    assert (None if axes is None else axes_words(axes)) == told

@@ -96,12 +96,13 @@ def turn_too_far(rates_dps: np.ndarray, force: np.ndarray, t_s: np.ndarray) -> b
 
 def axes_of(rates_dps: np.ndarray, force: np.ndarray, t_s: np.ndarray) -> np.ndarray | None:
     """(3, 3) an order of the axes with signs that the rates must be taken in to turn gravity as it
-    is seen to turn; None where gravity does not tell.
+    is seen to turn; None where gravity does not tell, or the force swings so little that it may be
+    a push that goes with the turning: a car's in a curve, against its roll.
 
     rates_dps, force: (3, n), row by row; t_s: (n,).
     """
     spans = _spans(rates_dps, force, t_s)
-    if spans is None:
+    if spans is None or _unturned(spans[1]) < _SWINGS:
         return None
     turns, forces = spans
     lacking = _lacking(turns, forces, _AXES)

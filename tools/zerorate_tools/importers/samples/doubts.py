@@ -110,7 +110,8 @@ def _refuse_gravity(seen: dict[str, np.ndarray], plan: Plan, scales: Scales, pat
     off = usual < _LEAST_G or usual > _MOST_G and high - low < _STEADY_G * usual
     if not off and "accel" not in plan.raw:
         # what shakes it averages out
-        usual = float(np.median([np.linalg.norm(x.mean(axis=1)) for x in _eighths(pushes)] or [1]))
+        means = [float(np.linalg.norm(part.mean(axis=1))) for part in _eighths(pushes)]
+        usual = float(np.median(means or [1.0]))
         off = usual > _MOST_G and bool(_meant(usual, plan, lsb))
     if not off:
         return
