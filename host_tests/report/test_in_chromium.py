@@ -38,7 +38,7 @@ def test_it_opens_without_a_complaint_and_asks_nobody(shown):
 
 def test_every_plot_is_drawn(shown):
     plots = drawn(shown.tab)
-    assert {"at-a-glance", "residual-time", "allan"} <= plots.keys()
+    assert {"at-a-glance", "residual-time", "allan", "estimators-inside"} <= plots.keys()
     for key, count in plots.items():
         assert count["traces"] == count["wanted"] > 0, key
 
@@ -130,6 +130,15 @@ class TestInUse:
         count = tab.locator("#plot-residual-time g.trace").count()
         tab.locator("#figure-residual-time [data-name=before]").click()
         assert tab.locator("#plot-residual-time g.trace").count() == count - 3
+
+    def test_the_slider_goes_through_the_moments(self, tab):
+        figure = tab.locator("#figure-estimators-inside")
+        last = figure.locator("output").text_content()
+        figure.locator("input").fill("3")
+        assert figure.locator("output").text_content() != last
+        values = "document.getElementById('plot-estimators-inside').data[0].y"
+        frames = json.loads(tab.locator("#plots").text_content())[-1]["frames"]
+        assert tab.evaluate(values) == frames[3][1]["0"]["y"]
 
     def test_a_finger_on_a_plot_scrolls_the_page(self, outcome, show):
         tab = show(outcome("an effect"), phone=True).tab

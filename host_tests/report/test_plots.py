@@ -125,12 +125,13 @@ def test_the_last_moment_is_the_state_that_a_replay_ends_in(log, seen):
             *(scales.temp_lsb_per_degc, scales.temp_offset_degc),
         )
     ).settings
-    first = axis_at(settings, 0) + AXIS.ESTIMATORS + ESTIMATOR.EST_BIAS_Q8
-    biases = state[first :: settings[SETTINGS.ESTIMATOR_WORDS]] / 256 / scales.gyro_lsb_per_dps
-    biases = biases[: settings[SETTINGS.ESTIMATOR_COUNT]]
-    shown = [e.bias_dps for e in seen[-1].held]
-    assert shown[0] == pytest.approx(biases[0])
-    assert set(np.round(shown, 9)) <= set(np.round(biases, 9))
+    for axis in range(3):
+        first = axis_at(settings, axis) + AXIS.ESTIMATORS + ESTIMATOR.EST_BIAS_Q8
+        biases = state[first :: settings[SETTINGS.ESTIMATOR_WORDS]] / 256 / scales.gyro_lsb_per_dps
+        biases = biases[: settings[SETTINGS.ESTIMATOR_COUNT]]
+        shown = [e.bias_dps for e in seen[-1].axes[axis]]
+        assert shown[0] == pytest.approx(biases[0])
+        assert set(np.round(shown, 9)) <= set(np.round(biases, 9))
 
 
 @pytest.mark.parametrize("count", [0, 1, 2])

@@ -53,6 +53,7 @@ TITLES = (
     "Allan deviation",
     "Thermal hysteresis: the curve and its data",
     "Which temperatures the firmware remembers",
+    "Inside the estimators",
 )
 
 

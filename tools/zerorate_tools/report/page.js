@@ -15,6 +15,7 @@
   function look(series, faded) {
     const own = colour(series.role);
     const mode = { line: "lines", points: "markers", both: "lines+markers" }[series.mark];
+    if (series.mark === "bars") return { type: "bar", width: series.width, textposition: "none", marker: { color: own } };
     return {
       type: "scatter", mode, connectgaps: false,
       line: { color: own, width: 1.8, dash: series.dash },
@@ -119,7 +120,7 @@
   function layoutOf(plot, box) {
     const margin = { l: plot.panels[0].y_names.length ? 64 : 46, r: 14, t: plot.panels[0].title ? 28 : 8, b: 44 };
     const layout = {
-      margin, annotations: [], shapes: [], showlegend: false, uirevision: "kept",
+      margin, annotations: [], shapes: [], showlegend: false, uirevision: "kept", bargap: 0,
       paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", hovermode: "closest",
       dragmode: touch ? false : "zoom", width: box.clientWidth, height: box.clientHeight,
       font: { family: getComputedStyle(document.body).fontFamily, size: 12, color: css("--text") },
@@ -157,10 +158,23 @@
       views.forEach((other) => other.setAttribute("aria-pressed", String(other === button)));
       draw();
     }));
+    slide(plot, figure, draw);
     return draw;
   }
 
   const names = (plot) => [...new Set(plot.series.map((s) => s.name))];
+
+  function slide(plot, figure, draw) {
+    const input = figure.querySelector("input[type=range]");
+    if (!input) return;
+    const said = figure.querySelector("output bdi");
+    input.addEventListener("input", () => {
+      const [label, values] = plot.frames[Number(input.value)];
+      said.textContent = label;
+      for (const [at, own] of Object.entries(values)) Object.assign(plot.series[at], own);
+      draw();
+    });
+  }
 
   const drawn = plots.map(ready);
   const all = () => drawn.forEach((draw) => draw());

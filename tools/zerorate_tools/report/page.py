@@ -39,6 +39,8 @@ ROLES: dict[str, tuple[str, str]] = {
     "event": ("#a8417f", "#e08abf"),
     "long": ("#0072b2", "#56b4e9"),
     "short": ("#d98200", "#e6a532"),
+    "any": ("#00795a", "#2fc49b"),
+    "now": ("#1b1b1f", "#f2f2f4"),
 }
 _LOAD = """\
 from zerorate.model import EffectModel
@@ -162,6 +164,9 @@ def plain(plot: Plot) -> dict[str, Any]:
         "views": list(plot.views),
         "panels": [_panel(p) for p in plot.panels],
         "series": [_series(s) for s in plot.series],
+        "frames": [
+            [label, {str(at): _values(s) for at, s in new.items()}] for label, new in plot.frames
+        ],
     }
 
 
@@ -183,14 +188,22 @@ def _panel(panel: Panel) -> dict[str, Any]:
 
 
 def _series(series: Series) -> dict[str, Any]:
-    look = ("panel", "role", "mark", "symbol", "dash", "size", "views")
+    look = ("panel", "role", "mark", "symbol", "dash", "size")
     return {
         **{name: getattr(series, name) for name in look},
         "name": markup(series.name),
-        "x": _numbers(series.x),
-        "y": _numbers(series.y),
-        "words": series.words and [markup(w) for w in series.words],
+        "views": list(series.views),
+        **_values(series),
     }
+
+
+def _values(series: Series) -> dict[str, Any]:
+    out: dict[str, Any] = {"x": _numbers(series.x), "y": _numbers(series.y)}
+    if series.width is not None:
+        out["width"] = _numbers(series.width)
+    if series.words is not None:
+        out["words"] = [markup(w) for w in series.words]
+    return out
 
 
 def _numbers(values: Iterable[float]) -> list[float | None]:

@@ -1,7 +1,7 @@
 """A plot before anything draws it: the page hands it to Plotly."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -17,8 +17,8 @@ MOST_POINTS = 1500
 class Series:
     """x, y: (n,), a NaN breaks a line; role: what it stands for, which gives its colour.
 
-    mark: line, points or both; views: in which it is shown, () is all; words: (n,) said when
-    pointed at.
+    mark: line, points, both or bars; width: (n,) of bars; views: in which it is shown, () is all;
+    words: (n,) said when pointed at.
     """
 
     panel: int
@@ -31,6 +31,7 @@ class Series:
     dash: str = "solid"
     size: float = 6.0
     views: tuple[str, ...] = ()
+    width: Numbers | None = None
     words: Sequence[str] | None = None
 
 
@@ -80,7 +81,8 @@ class Plot:
     """Panels side by side, or with `stacked` one under another along one x.
 
     key: its name in file names and on the page; description: what it shows, for who cannot see it;
-    views: names of which one is shown at a time.
+    views: names of which one is shown at a time; frames: label and (series -> new values) of the
+    moments among which a slider chooses, the last of them drawn first.
     """
 
     key: str
@@ -91,6 +93,7 @@ class Plot:
     series: tuple[Series, ...]
     stacked: bool = False
     views: tuple[str, ...] = ()
+    frames: tuple[tuple[str, Mapping[int, Series]], ...] = field(default=())
 
 
 def thinned(x: Numbers, y: Numbers, most: int = MOST_POINTS) -> tuple[Numbers, Numbers]:

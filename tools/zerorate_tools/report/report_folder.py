@@ -10,7 +10,7 @@ from ..loop.verify.analysis import Analysis
 from ..model import read_model
 from ..recordings.atomic import final
 from .effect_plots import effect_plots
-from .estimators import held_over_time, moments
+from .estimators import held_over_time, inside, moments
 from .page import deployment, page
 from .plot import Plot
 from .residual_plots import (
@@ -60,7 +60,8 @@ def plots_of(
     model = Path(folder) / "model.bin" if slots else None
     total_s = sum(s.blocks * s.block_s for s in analysis.sessions)
     try:
-        plots.append(held_over_time(moments(logs, model, max(60.0, total_s / _MOST_MOMENTS))))
+        seen = moments(logs, model, max(60.0, total_s / _MOST_MOMENTS))
+        plots += [held_over_time(seen), inside(seen)]
     except ZerorateError as problem:
         notes.append(f"The estimators are not shown: {problem}.")
     return [p for p in plots if p is not None], notes
