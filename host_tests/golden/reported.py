@@ -207,6 +207,7 @@ def drawn(logs, folder):
         for plot in plots:
             sizes = [page.height(plot, narrow) for narrow in (True, False)]
             told = [page.plain(plot), sizes, page.legend(plot)]
+            told[0]["frames"] = told[0]["frames"][-2:]
             found |= gathered({f"{number} {plot.key}": told})
     return found | gathered_plain({"motion": _in_motion(folder, scales)})
 
