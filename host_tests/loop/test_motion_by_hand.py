@@ -277,6 +277,17 @@ def test_axes_that_gravity_contradicts_are_refused_by_name(tmp_path):
     check_axes(replace(turned, given=np.ones((len(turned.rate), 4))))
 
 
+def test_an_attitude_that_is_the_inverse_is_refused_with_the_words_that_mend_it(tmp_path):
+    def inverse(columns):
+        return columns | {f"q{axis}": -columns[f"q{axis}"] for axis in "xyz"}
+
+    with pytest.raises(
+        CannotClose, match="world's axes into the body's: import it with --map qx=-"
+    ):
+        check_axes(moving_of(written(tmp_path, inverse, seen=True)))
+    check_axes(moving_of(written(tmp_path, seen=True)))
+
+
 def test_windows_are_whole_and_move_and_parts_have_their_own_rests(tmp_path):
     moving = moving_of(written(tmp_path))
     assert [s.start for s in moving.spans(10.0)] == [*range(0, 1001, 125)]
