@@ -118,31 +118,21 @@ def test_no_intermediate_leaves_31_bits(model):
     assert e[EFFECTS.SEEN] == 400
 
 
-@pytest.fixture(scope="module")
-def on_interpreter(repository):
-    def run(runtime):
-        result = runtime.run(
-            Path(__file__).parent / "on_micropython" / "refine_without_heap.py",
-            modules=[repository / "firmware"],
-            files_in={"model.bin": encoded(build_model(TWO, SCALES))},
-            files_out=["out.bin"],
-            check=True,
-        )
-        return np.frombuffer(result.files["out.bin"], "<i4")
-
-    return run
-
-
-@pytest.fixture(scope="module")
-def on_host():
+def test_bytecode_refines_as_cpython_does(micropython, repository):
+    result = micropython.run(
+        Path(__file__).parent / "on_micropython" / "refine_without_heap.py",
+        modules=[repository / "firmware"],
+        files_in={"model.bin": encoded(build_model(TWO, SCALES))},
+        files_out=["out.bin"],
+        check=True,
+    )
     model = loaded(TWO)
     model.refine()
     e, state = model.e, array("i", [0] * STATE.FIT_WEIGHTS)
     for n in range(120):
         for slot in range(2):
-            e[slot_at(slot) + SLOT.SLOT_VALUE] = (
-                n * (slot + 3) * 7919 >> 2
-            ) % 40001 * 400 - 8000000
+            value = (n * (slot + 3) * 7919 >> 2) % 40001 * 400 - 8000000
+            e[slot_at(slot) + SLOT.SLOT_VALUE] = value
         for axis in range(3):
             state[STATE.SEGMENT_TOTAL + axis] = n * (axis + 5) * 104729 % 60013 - 20000
         state[STATE.TEMP] = n * 31 - 2000
@@ -150,8 +140,4 @@ def on_host():
         while e[EFFECTS.REFINE_WORK]:
             effect_refine.refine(e)
     assert list(e[slot_at(0) + NOW :][:3]) != list(e[slot_at(0) + OWN :][:3])
-    return np.array(e)
-
-
-def test_bytecode_refines_as_cpython_does(micropython, on_interpreter, on_host):
-    np.testing.assert_array_equal(on_interpreter(micropython), on_host)
+    np.testing.assert_array_equal(np.frombuffer(result.files["out.bin"], "<i4"), e)
