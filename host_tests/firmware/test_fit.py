@@ -15,7 +15,6 @@ from zerorate_tools.model.term import Term
 from .played import LINE_LSB
 from .simulated_sources import SCALES, SENSOR, loaded
 
-_FREE = -1048576
 _RAIL_Q8 = 32767 * 256
 
 points = st.lists(

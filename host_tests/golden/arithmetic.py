@@ -6,7 +6,6 @@ import numpy as np
 from zerorate.arithmetic import atan2, fixed, real
 
 _TIMES = 1500
-_EXPONENTS = range(-60, 60)
 # function -> the bits of each number that it takes, negative where its sign is free
 _OF_NUMBERS = {
     fixed.scaled: (-28, -28, range(15, 31)),
