@@ -114,10 +114,16 @@ def browser(chromium):
 
 def interpreter(name):
     """The interpreter, or a skip that says how to get it; a failure where it is required."""
+    return _found(name, lambda: find(name))
+
+
+def _found(name, sought):
     try:
-        return find(name)
+        return sought()
     except MissingRuntime as missing:
-        return _left_out(name, missing)
+        if name in _REQUIRED:
+            pytest.fail(f"{name} is named in ZERORATE_REQUIRE: {missing}", pytrace=False)
+        pytest.skip(str(missing))
 
 
 @pytest.fixture(scope="session", params=NAMES)
@@ -141,25 +147,13 @@ def find_runtime():
 @pytest.fixture(scope="session")
 def boards_folder():
     """The folder of boards' firmware and tools that ZERORATE_BOARDS names."""
-    try:
-        return named_folder()
-    except MissingRuntime as missing:
-        return _left_out(_BOARDS, missing)
+    return _found(_BOARDS, named_folder)
 
 
 @pytest.fixture(scope="session")
 def pico_parts():
     """What an emulated Pico is made of."""
-    try:
-        return find_pico()
-    except MissingRuntime as missing:
-        return _left_out(_BOARDS, missing)
-
-
-def _left_out(name, missing):
-    if name in _REQUIRED:
-        pytest.fail(f"{name} is named in ZERORATE_REQUIRE: {missing}", pytrace=False)
-    pytest.skip(str(missing))
+    return _found(_BOARDS, find_pico)
 
 
 @pytest.fixture(scope="session")
