@@ -11,8 +11,10 @@ import numpy as np
 import pandas as pd
 import pytest
 import zerorate_tools
-from zerorate_tools import cli, installed
+from zerorate_tools import cli, installed, runtimes
 from zerorate_tools.cli import main
+from zerorate_tools.commands.demo import get_ready
+from zerorate_tools.errors import MissingRuntime
 from zerorate_tools.installed import adding
 from zerorate_tools.recordings import Scales, recording_writer
 from zerorate_tools.simulate import simulate_to_files
@@ -154,6 +156,15 @@ def test_the_public_names_are_there_and_nothing_else_is():
         assert name in dir(zerorate_tools)
     with pytest.raises(AttributeError, match="no attribute 'nonsense'"):
         _ = zerorate_tools.nonsense
+
+
+def test_the_demo_says_that_it_fetches_before_it_does(monkeypatch, capsys):
+    def fetched(name):
+        assert f"fetching MicroPython ({name}), once" in capsys.readouterr().err
+
+    monkeypatch.setattr(runtimes, "find", Mock(side_effect=MissingRuntime("none")))
+    monkeypatch.setattr(runtimes, "fetch", fetched)
+    get_ready("wasm")
 
 
 @pytest.mark.parametrize(

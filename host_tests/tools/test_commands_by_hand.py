@@ -1,4 +1,4 @@
-"""What commands do beside the function behind them: what they fetch, serve and refuse."""
+"""What commands do beside the function behind them: what they print, fetch, serve and refuse."""
 
 import errno
 import fcntl
@@ -9,6 +9,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from unittest.mock import ANY, Mock, call
 
+import numpy as np
 import pytest
 from zerorate_tools import cli
 from zerorate_tools.errors import MissingRuntime, ZerorateError
@@ -32,6 +33,37 @@ def test_1_says_that_nothing_came(stands_in, words, function, nothing, capsys):
     assert words[:6] != "record" or "no sample came" in capsys.readouterr().out
 
 
+def test_allan_prints_mdps_of_each_length_and_the_lowest(stands_in, capsys):
+    rates = np.random.default_rng(1).normal(0, 1e-3, (50, 3))
+    stands_in("zerorate_tools.loop.read.still.still_stretch", (rates, 0.5))
+    assert cli.main(["allan", "run.parquet"]) == 0
+    first, _, *rows, floor = capsys.readouterr().out.splitlines()
+    numbers = np.array([row.split() for row in rows], float)
+    assert first == "the longest stretch at rest: 25.0 s" and numbers[0, 0] == 0.5
+    assert numbers[0, 1:] == pytest.approx(np.full(3, 1.0), abs=0.3)
+    assert [float(n) for n in floor.split()[1:]] == numbers[:, 1:].min(axis=0).tolist()
+
+
+def test_replay_prints_the_shares_of_verdicts_and_sources_and_what_explains_them(stands_in, capsys):
+    done = {"verdicts": {"still": 3, "moving": 1}, "sources": {"none": 4}, "explanation": "a\nb"}
+    stands_in("zerorate_tools.replay.replay", SimpleNamespace(samples=4, **done))
+    assert cli.main(["replay", "run.parquet", "--out", "o.parquet"]) == 0
+    assert capsys.readouterr().out.splitlines() == [
+        "o.parquet: 4 samples",
+        "  verdicts: still 3 (75.0%), moving 1 (25.0%)",
+        "  source of the bias: none 4 (100.0%)",
+        "  a",
+        "  b",
+    ]
+
+
+def test_import_prints_what_became_of_each_file(stands_in, capsys):
+    report = SimpleNamespace(lines=lambda: ["4 samples", "left aside: x"])
+    stands_in("zerorate_tools.importers.import_recording", report)
+    assert cli.main(["import", "s.py", "--out", "o.csv"]) == 0
+    assert capsys.readouterr().out == "o.csv\n  4 samples\n  left aside: x\n"
+
+
 def test_what_was_watched_is_drawn_where_that_is_asked(stands_in, capsys):
     stands_in("zerorate_tools.watch.watching.watch", "live")
     draw = stands_in("zerorate_tools.watch.screen.draw")
@@ -53,6 +85,18 @@ def test_a_model_is_shown_in_words_or_as_json(stands_in, capsys, words, said):
     stands_in("zerorate_tools.model.model_in_words.in_words", "in words")
     assert cli.main(["model", "show", "m.bin", *words.split()]) == 0
     assert read.call_args == call(Path("m.bin")) and capsys.readouterr().out == said
+
+
+@pytest.mark.parametrize("in_motion", [False, True])
+def test_close_prints_what_it_found_at_rest_or_in_motion(stands_in, capsys, in_motion):
+    stands_in("zerorate_tools.closing.close", {"in_motion": 1} if in_motion else {})
+    stands_in("zerorate_tools.closing.motion_in_words", "in motion")
+    stands_in("zerorate_tools.loop.report.in_words.in_words", "the words")
+    stands_in("zerorate_tools.report.sentences.headline", "the headline")
+    stands_in("zerorate_tools.report.sentences.why_both", "why")
+    assert cli.main(["close", "a.csv", "--out", "o"]) == 0
+    words = ["in motion"] if in_motion else ["the headline.", "why", "the words"]
+    assert capsys.readouterr().out.splitlines() == [*words, "report: o/report.html"]
 
 
 def test_without_its_package_bench_says_what_to_install(monkeypatch, capsys):
