@@ -116,10 +116,12 @@ def test_how_a_body_is_mounted_is_told_from_how_the_axes_are_turned(tmp_path, mo
         names = [f"q{part}" for part in "wxyz"]
         attitude = np.column_stack([recording.columns[q] for q in names])
         body = multiply(attitude, rotation(np.array(mounted_deg)))
+        body[np.arange(len(body)) % 200 < 25] = 0.0  # markers are hidden for half a second
         recording.columns.update(zip(names, np.rint(body).astype(np.int64).T))
         write_recording(recording, log)
     motion = close(logs, tmp_path / "closed")["in_motion"]
     assert np.abs(np.array(motion["matrix_percent"]) / 100 - matrix).max() < 0.002
+    assert motion["unit"] == "degrees a minute of turn"
 
 
 def test_a_matrix_of_one_half_that_makes_the_heading_of_the_other_worse_is_not_deployed(tmp_path):

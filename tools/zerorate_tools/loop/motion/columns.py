@@ -129,7 +129,7 @@ def columns_of(moving: Moving, matrix, own) -> Columns:
         parts.append((seen, np.concatenate([middle, late], axis=2), added))
     seen, theta, own = (np.concatenate(p) for p in zip(*parts))
     step_s = per * moving.dt_s
-    off = np.concatenate(offs) if offs else None
+    off = _bridged(np.concatenate(offs), step_s) if offs else None
     at, loud = np.arange(len(seen)) * per, _loud(seen, step_s)
     return Columns(at, seen, loud, theta, own, off, step_s, moving.mounted)
 
@@ -188,6 +188,24 @@ def _off(given: np.ndarray, attitudes: np.ndarray, per: int) -> np.ndarray:
     total = off.reshape(-1, per, 4).sum(axis=1)
     length = np.linalg.norm(total, axis=1, keepdims=True)
     return np.divide(total, length, out=np.full_like(total, np.nan), where=length > 0)
+
+
+def _bridged(off: np.ndarray, step_s: float) -> np.ndarray:
+    """Turns (m, 4) across what was not seen for less than half a wave of the quickest row: there
+    they go on evenly, as errors of rates do in the meantime."""
+    seen = np.isfinite(off).all(axis=1)
+    at, gone = np.flatnonzero(seen), np.flatnonzero(~seen)
+    after = np.searchsorted(at, gone)
+    inside = (after > 0) & (after < len(at))
+    gone, first, last = gone[inside], at[after[inside] - 1], at[after[inside]]
+    short = (last - first) * step_s < 0.5 / MOST_HZ
+    gone, first, last = gone[short], first[short], last[short]
+    sign = np.where((off[first] * off[last]).sum(axis=1) < 0, -1.0, 1.0)[:, None]
+    share = ((gone - first) / (last - first))[:, None]
+    mean = (1.0 - share) * off[first] + share * sign * off[last]
+    out = off.copy()
+    out[gone] = mean / np.linalg.norm(mean, axis=1, keepdims=True)
+    return out
 
 
 def _summed(still: np.ndarray, by: np.ndarray) -> np.ndarray:
