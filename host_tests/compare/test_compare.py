@@ -58,6 +58,10 @@ def test_a_log_named_twice_is_refused_as_nothing_was_learned_before_it(drifting,
     copy.write_bytes(drifting.read_bytes())
     with pytest.raises(BadRecording, match="copy.parquet: holds the same samples as .*drifting"):
         compare([drifting, copy])
+    (other := tmp_path / "day2" / "drifting.parquet").parent.mkdir()
+    a_log(other, [0.9, 0.6, 0.7])
+    with pytest.raises(BadRecording, match="day2.drifting.parquet: has the name of .*drifting"):
+        compare([drifting, other])
 
 
 def test_what_is_known_before_a_rest_is_held_against_it(drifting):

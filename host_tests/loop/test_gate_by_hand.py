@@ -115,6 +115,12 @@ def test_what_differs_by_its_import_alone_is_said_how_to_import(one, other, more
     assert text and (said in text if said else "--" not in text)
 
 
+def test_two_recordings_of_one_name_are_refused():
+    scales = Scales("X", 100.0, 131.0, None, 340.0, 36.53)
+    one, other = (SimpleNamespace(name="imu", scales=scales, digest=d) for d in "ab")
+    assert "two recordings are named imu" in refused(same_settings, [one, other])
+
+
 @pytest.mark.parametrize("over, told", [(3, ""), (4, "40 %")])
 def test_shaking_in_more_than_three_tenths_of_the_rests_is_told_with_its_share(over, told):
     report, limit = GateReport(), DEFAULTS["still_g"] ** 2

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from scipy.stats import f as fisher
-from zerorate_tools.loop.motion import by_windows, scales_and_timing, windows
+from zerorate_tools.loop.motion import by_windows, heading, scales_and_timing, windows
 from zerorate_tools.loop.motion.device import LEVEL, DifferentDevices, Shown, check_one_device
 from zerorate_tools.loop.motion.heading import heading_lost
 from zerorate_tools.loop.motion.moving import Moving, _attitude_by, check_axes, moving_of
@@ -304,3 +304,12 @@ def test_windows_are_whole_and_move_and_parts_have_their_own_rests(tmp_path):
     )
     part = replace(moving, rests=rests).part(slice(500, 1000))
     assert part.rests[:, 0].tolist() == rests[1:3, 0].tolist() and len(part.rate) == 500
+
+
+@pytest.mark.parametrize(("without", "with_it", "counts"), [(400, 420, False), (1, 420, True)])
+def test_a_heading_that_is_far_off_anyway_hardly_counts_but_one_that_gets_so(
+    without, with_it, counts
+):
+    squares = np.array([[1.0] * 9 + [without], [0.25] * 9 + [with_it]])
+    weight = heading._weights(squares)
+    assert (weight[-1] > 0.5 * weight[0]) is counts and weight[0] > 0

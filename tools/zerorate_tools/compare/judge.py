@@ -205,10 +205,13 @@ def compare(
     seen: dict[str, Path] = {}
     for path in paths:
         ticks = ticks_with_spread(path)
-        first = seen.setdefault(ticks.digest, path)
-        if first is not path:
-            do = "name each recording once"
-            raise BadRecording(path, f"holds the same samples as {first}", do=do)
+        for key, problem, do in (
+            (ticks.digest, "holds the same samples as", "name each recording once"),
+            (ticks.name, "has the name of", "rename one"),
+        ):
+            first = seen.setdefault(key, path)
+            if first is not path:
+                raise BadRecording(path, f"{problem} {first}", do=do)
         sessions.append(given(read_recording(path, keep_gaps=True)))
         rests.append(rests_of(ticks, sessions[-1]))
         advance(1)

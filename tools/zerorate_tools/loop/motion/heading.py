@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from ...simulate.attitude import IDENTITY, integrate
 from .columns import BIAS
-from .matrix import beside
+from .matrix import FREEDOM, ROUNDS, beside
 from .moving import LEAST_DPS, W_LAST, Moving, seconds_seen, turned_between
 
 #: Headings are told over stretches of this length: filters with a magnetometer forget as soon.
@@ -18,15 +18,25 @@ _STRETCH_S = 30.0
 def heading_lost(
     judged: Sequence[tuple[Moving, NDArray[np.float64]]],
 ) -> tuple[float, float] | None:
-    """Degrees a minute without and with a matrix (3, 3), RMS over stretches of recordings, each
-    beside a matrix. None where no stretch is seen."""
+    """Degrees a minute without and with a matrix (3, 3), weighted RMS over stretches of recordings,
+    each beside a matrix. None where no stretch is seen."""
     seen = [(one, matrix) for one, matrix in judged if one.given is not None]
     errors = [[_lost(one, m) for m in (0.0 * matrix, matrix)] for one, matrix in seen]
     squares = np.concatenate([np.zeros((2, 0)), *errors], axis=1) ** 2
     if not squares.shape[1]:
         return None
-    before, after = 60.0 * np.sqrt(squares.mean(axis=1))
+    before, after = 60.0 * np.sqrt(np.average(squares, axis=1, weights=_weights(squares)))
     return float(before), float(after)
+
+
+def _weights(squares: NDArray) -> NDArray[np.float64]:
+    """(k,) weight of each stretch: an error that is large without and with the matrix is the
+    attitude's own (Student's t, as in `matrix._weigh`). squares: (2, k) without and with."""
+    least, weight = squares.min(axis=0), np.ones(squares.shape[1])
+    for _ in range(ROUNDS):
+        usual = max(np.average(least, weights=weight), 1e-300)
+        weight = (FREEDOM + 1.0) / (FREEDOM + least / usual)
+    return weight
 
 
 def _lost(one: Moving, matrix: NDArray) -> NDArray[np.float64]:

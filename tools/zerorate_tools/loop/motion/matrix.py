@@ -23,7 +23,7 @@ _LEAST_BLOCK, _MOST_BLOCKS = 4, 8
 #: Rows that a data sheet's word on turns between rests is worth: three turns.
 _TURN_WORTH = 6.0
 #: Degrees of freedom of a hand's loudness: few, and yet it has a variance.
-_FREEDOM, _ROUNDS = 4.0, 6
+FREEDOM, ROUNDS = 4.0, 6
 #: A turn of the axes turns the frame that headings are told in, once: no heading is lost by it.
 _NO_TURN = np.eye(MATRIX) - groups()[-1]
 #: Of its own errors those before a delay and a lever arm, which are small, are taken out.
@@ -202,12 +202,12 @@ def _weigh(f: Fitted, matrix: np.ndarray) -> None:
     maximisation: Lange, Little and Taylor 1989)."""
     rows, weight = f.rows, np.ones(f.rows.errors.shape)
     number = 2.0 * (rows.counts * rows.there) @ rows.bands.T
-    for _ in range(_ROUNDS):
+    for _ in range(ROUNDS):
         left, taken = _left(f, matrix)
         free = rows.there[..., None] - np.minimum(taken * f.precision, 1.0)
         noise = _variances(rows, weight * left, free)[rows.kinds]
         level = (rows.counts[:, None] * (left + taken) / noise)[..., :2].sum(axis=2)
-        quiet = (_FREEDOM + number) / (_FREEDOM + level @ rows.bands.T)
+        quiet = (FREEDOM + number) / (FREEDOM + level @ rows.bands.T)
         weight = (quiet @ rows.bands)[..., None]
         f.precision = weight / noise
 

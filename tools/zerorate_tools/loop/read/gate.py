@@ -56,8 +56,8 @@ class GateReport:
 
 
 def same_settings(ticks: list[Ticks]) -> None:
-    """Raise CannotClose for a session of another chip, sensor or scale, or a recording given
-    twice.
+    """Raise CannotClose for a session of another chip, sensor or scale, or a recording or a name
+    given twice.
     """
     first, seen = _settings(ticks[0]), {ticks[0].digest: ticks[0].name}
     for t in ticks[1:]:
@@ -71,6 +71,10 @@ def same_settings(ticks: list[Ticks]) -> None:
         if t.digest in seen:
             raise CannotClose(
                 f"{t.name} holds the same samples as {seen[t.digest]}; name each recording once"
+            )
+        if t.name in seen.values():
+            raise CannotClose(
+                f"two recordings are named {t.name}; rename one: a report tells them by their names"
             )
         seen[t.digest] = t.name
 
