@@ -312,4 +312,4 @@ def test_a_heading_that_is_far_off_anyway_hardly_counts_but_one_that_gets_so(
 ):
     squares = np.array([[1.0] * 9 + [without], [0.25] * 9 + [with_it]])
     weight = heading._weights(squares)
-    assert (weight[-1] > 0.5 * weight[0]) is counts and weight[0] > 0
+    assert bool(weight[-1] > 0.5 * weight[0]) is counts
