@@ -1,6 +1,6 @@
 """The figures that the loop must reach, each with its limit, its interval and whether it does."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import asdict, dataclass
 from functools import partial
 from itertools import pairwise
@@ -31,6 +31,8 @@ from .files import ROWS
 from .run_trial import Outcome
 
 Looked = TypeVar("Looked")
+#: How the names of figures begin that are of all devices together.
+_OF_ALL = ("2x, named", "2x-5x all", "groups told", "held-out error")
 #: Ends of the probabilities that are counted together.
 _TOLD = (0.05, 0.35, 0.65, 1.0)
 
@@ -82,23 +84,26 @@ def share(
 def figures(outcomes: list[Outcome], whole: bool = True) -> list[Figure]:
     """Every figure that simulated devices and quiet recordings give. whole: whether these are all
     of them, so that what is said of all can be."""
+    every = list(_figures(outcomes))
+    return every if whole else [f for f in every if not f.name.startswith(_OF_ALL)]
+
+
+def _figures(outcomes: list[Outcome]) -> Iterator[Figure]:
     rows: dict[str, list[Outcome]] = {}
     for o in outcomes:
         rows.setdefault(o.device.row, []).append(o)
-    return [
-        *_where_nothing_is(rows),
-        *_catalogue(rows),
-        *_outside(rows.get(OUT, [])),
-        *_curves(rows.get(CURVE, [])),
-        *_corners(rows.get(CORNERS, [])),
-        *_unrecorded(rows),
-        *_removed(rows),
-        *_told(rows),
-        *_pairs(rows.get(TWO, [])),
-        *_many_widths(rows),
-        *_from_files(rows),
-        *(_made_worse(outcomes) if whole else ()),
-    ]
+    yield from _where_nothing_is(rows)
+    yield from _catalogue(rows)
+    yield from _outside(rows.get(OUT, []))
+    yield from _curves(rows.get(CURVE, []))
+    yield from _corners(rows.get(CORNERS, []))
+    yield from _unrecorded(rows)
+    yield from _removed(rows)
+    yield from _told(rows)
+    yield from _pairs(rows.get(TWO, []))
+    yield from _many_widths(rows)
+    yield from _from_files(rows)
+    yield from _made_worse(outcomes)
 
 
 def _where_nothing_is(rows):
@@ -278,7 +283,8 @@ def _made_worse(outcomes):
     blocks = [o for o in outcomes if o.device.row not in (*ROWS, TOLD, CORNERS)]
     with_recorded = [o for o in blocks if not o.device.row.startswith(HIDDEN)]
     name = "held-out error made worse by more than 2 %"
-    yield share(name, with_recorded, lambda o: o.worse, 2.0, at_most=True)
+    if with_recorded:
+        yield share(name, with_recorded, lambda o: o.worse, 2.0, at_most=True)
     hidden = [o for o in blocks if o.device.row.startswith(HIDDEN)]
     if hidden:
         yield share(f"{name}, cause not recorded", hidden, lambda o: o.worse, 2.0, at_most=True)
