@@ -82,7 +82,7 @@ AREAS = {
         ["firmware/zerorate/motion/"],
         [SWUNG, KNOWN, _FIGURES + "[settings]", _FIGURES + "[kernels of motion]"]
         + ["firmware/test_" + name for name in (
-            "in_motion.py", "motion_frame.py")],
+            "in_motion.py", "motion_frame.py", "motion_fit.py")],
     ),
     "gravity": (
         ["firmware/zerorate/gravity/"],
@@ -100,7 +100,7 @@ AREAS = {
         ["firmware/zerorate/"],
         ["firmware/test_" + name for name in (
             "corrector.py", "checked.py", "bursts.py", "documents.py",
-            "sources_together.py", "estimators.py", "turn_on.py",
+            "sources_together.py", "estimators.py", "motion_fit.py", "turn_on.py",
             "machine_code_by_hand.py", "guard.py")]
         + [KNOWN, GOLDEN, _FIGURES + "[settings]", _FIGURES + "[watched]"]
         + [_FIGURES + "[arithmetic]"],

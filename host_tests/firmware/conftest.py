@@ -3,6 +3,7 @@
 from functools import cache, lru_cache
 from pathlib import Path
 
+import numpy as np
 import pytest
 from zerorate_fakes.memory import FakeMemory
 
@@ -51,3 +52,9 @@ def warm_up():
 def memory():
     """Storage for what was learned, erased."""
     return FakeMemory(4096)
+
+
+@pytest.fixture(params=range(4))
+def draw(request):
+    """A generator of random numbers; each test is run with four."""
+    return np.random.default_rng(request.param)
