@@ -4,7 +4,7 @@ import io
 
 import numpy as np
 import pytest
-from zerorate_tools.boards import fake_chip
+from zerorate_tools.boards import fake_hand
 from zerorate_tools.boards.bus import record_bus
 from zerorate_tools.cli import main
 from zerorate_tools.closing import close
@@ -80,7 +80,7 @@ class Silent:
 def test_a_guide_beside_the_recording_sees_what_one_that_waits_sees(tmp_path):
     seen = {}
     for waits in (True, False):
-        bus, clock, _ = fake_chip.in_hand()
+        bus, clock, _ = fake_hand.in_hand()
         with Guide(Silent(), waits=waits) as guide:
             record_bus(
                 *(bus, tmp_path / f"{waits}.parquet"),

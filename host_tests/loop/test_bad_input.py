@@ -156,5 +156,5 @@ def test_a_part_that_an_import_was_not_told_is_named_as_the_other_one_is(closing
 
 def test_scales_that_an_import_chose_are_told_how_to_agree(closing):
     wider = replace(MPU, sensor="unknown", gyro_lsb_per_dps=65.5)
-    with pytest.raises(CannotClose, match="import both with --gyro-lsb-per-dps N"):
+    with pytest.raises(CannotClose, match="import both with --gyro-lsb-per-dps 65.5"):
         closing([at_rest(0), at_rest(1)], replace(MPU, sensor="unknown"), wider)

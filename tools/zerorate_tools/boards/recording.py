@@ -57,7 +57,7 @@ def _is_board(port_or_bus: str, options: dict[str, Any]) -> bool:
 
 def _record_fake(source: str, out: Path, *, seconds: float | None, **options: Any) -> Recorded:
     from .bus import record_bus
-    from .fake_chip import in_hand
+    from .fake_hand import in_hand
 
     given = {name: options[name] for name in ("address", "part") if name in options}
     try:
