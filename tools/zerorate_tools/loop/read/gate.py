@@ -93,10 +93,14 @@ def _alike(name: str, one: Any, other: Any) -> bool:
 
 
 def _how_alike(name: str, one: Any, other: Any) -> str:
-    """How to import what differs by a name that nobody gave, or a scale that was chosen alone."""
+    """How to import what differs by a name that nobody gave, by a scale that was chosen alone, or
+    by a clock that nobody holds, as a phone's."""
     if name == "sensor" and "unknown" in (one, other):
         part = other if one == "unknown" else one
         return f": if it is the same part, import the other with --sensor {part}"
+    if name == "odr_hz":
+        hz = f"{(one * other) ** 0.5:.3g}"
+        return f": if the setting is one and only the log's rate wavers, import both with --hz {hz}"
     if "_lsb_" not in name or None in (one, other):
         return ""
     option = f"--{name.replace('_', '-')} {min(one, other):g}"
