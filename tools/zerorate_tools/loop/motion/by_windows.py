@@ -21,12 +21,11 @@ class RateScale:
     scale-factor, cross-axis, turned-axes or several; reference: what it was measured against;
     gains: of each way to judge what was left out, above zero where it is no worse; before, after:
     RMS of what turns windows, in `unit`; fastest_dps: (3,) up to which it was seen; unseen: (3, 3)
-    bool, entries
-    that the motion did not show; level: of p; share: how much of the matrix is deployed; heading:
-    degrees a minute lost against an attitude that was given, without and with the matrix of what
-    was left out; worse: of that, or of what was fitted, where it forbids the matrix; unused: names
-    of recordings whose attitude shows less than gravity; by_others: of several recordings without a
-    holdout, what would be deployed by all but the one named.
+    bool, entries that the motion did not show; level: of p; share: how much of the matrix is
+    deployed; heading: degrees a minute lost against an attitude that was given, without and with
+    the matrix of what was left out; worse: of that, or of what was fitted, where it forbids the
+    matrix; unused: names of recordings whose attitude shows less than gravity; by_others: of
+    several recordings without a holdout, what would be deployed by all but the one named.
     """
 
     matrix: np.ndarray

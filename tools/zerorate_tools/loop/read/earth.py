@@ -16,6 +16,7 @@ EARTH_DPS = float(np.linalg.norm(earth_rate_dps(0.0)))
 ATTITUDE, LATITUDE = "attitude", "latitude_deg"
 ROTATION = "earth-rotation"
 _POSES = 100
+#: Sigmas beyond which an effect is surely larger.
 _SURE = 3.0
 
 
@@ -65,8 +66,7 @@ def _attitude(ticks: Ticks) -> np.ndarray | None:
 def can_be_earth(
     poses: np.ndarray, coefficients: np.ndarray, covariance: np.ndarray, unknown_dps: float
 ) -> bool:
-    """Whether an effect of acceleration is no larger than the unknown part of Earth's rate may
-    be.
+    """Whether an effect of acceleration may be no larger than the unknown part of Earth's rate.
 
     poses: (n, k) its bases in the poses that were seen; coefficients: (k, 3) dps per unit;
     covariance: (3, k, k) of them. The difference between any two poses, less three sigma of it, is
