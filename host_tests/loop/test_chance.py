@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 from zerorate_tools.loop.fit.intervals import block_bootstrap, rms
-from zerorate_tools.loop.fit.noise import floor_dps, noise_of
-from zerorate_tools.loop.fit.regression import Regression
+from zerorate_tools.loop.fit.regression import Regression, floor_dps, noise_of
 from zerorate_tools.loop.fit.surrogates import NullRatios, null_ratios
 
 from . import dense

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from zerorate_tools.loop.fit.noise import floor_dps
+from zerorate_tools.loop.fit.regression import floor_dps
 from zerorate_tools.loop.verify import analysis as analysing
 from zerorate_tools.loop.verify import prune_by_holdout as prune
 from zerorate_tools.loop.verify.analysis import deployable

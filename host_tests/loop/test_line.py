@@ -9,6 +9,7 @@ from zerorate_tools.loop.fit import line
 from zerorate_tools.loop.fit.free_curve import draw, is_curve, of_any_form, parts
 from zerorate_tools.loop.fit.regression import Regression
 from zerorate_tools.loop.fit.smooth import curve_of, matern, smooth
+from zerorate_tools.loop.search.selection import deployed as told_by
 from zerorate_tools.model.term import Term, play
 
 from . import dense
@@ -98,7 +99,7 @@ def deployed(sessions, terms, straight=(LINE,), effects=True, **more):
     plain = {"alone": False, "stands_alone": False, "applied": np.ones((len(terms), 3)), **more}
     regression = Regression(sessions)
     selection = SimpleNamespace(straight=straight, terms=terms, regression=regression, **plain)
-    return regression.fit([*straight, *terms]).coefficients, *line.deployed(selection, effects)
+    return regression.fit([*straight, *terms]).coefficients, *told_by(selection, effects)
 
 
 def test_what_is_deployed_is_the_fit_and_beside_it_the_line_as_the_firmware_learns_it(sessions):

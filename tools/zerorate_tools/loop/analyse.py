@@ -9,8 +9,7 @@ from threadpoolctl import threadpool_limits
 
 from ..recordings import open_recording
 from .fit.cross_products import whitener
-from .fit.line import deployed
-from .fit.noise import floor_dps
+from .fit.regression import floor_dps
 from .fit.single import PiecesByLine
 from .motion.by_windows import seen_in_words
 from .motion.scales_and_timing import (
@@ -37,6 +36,7 @@ from .search.catalogue import extra_channels
 from .search.naming import name_earth
 from .search.periodic import periodic
 from .search.select import select
+from .search.selection import deployed
 from .search.steps_first import remove_steps
 from .verify.analysis import Analysis
 from .verify.by_kernels import PiecesByKernels

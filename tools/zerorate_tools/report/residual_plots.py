@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..allan import Noise, overlapping
-from ..loop.fit.noise import noise_of
-from ..loop.fit.regression import predicted
+from ..loop.fit.regression import noise_of, predicted
 from ..loop.read.sessions import Session
 from ..loop.verify.analysis import Analysis
 from .plot import ZERO, Line, Numbers, Panel, Plot, Series, panels_of_axes, thinned

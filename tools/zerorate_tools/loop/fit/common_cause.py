@@ -3,12 +3,15 @@
 import numpy as np
 from scipy.stats import chi2
 
+from ...model.term import Terms
+from .regression import Fit, Regression
+
 _LOWEST = (3, 6, 12, 24)
 #: A chance below which something is said to be there.
 RARE = 1e-3
 
 
-def coherence(regression, terms) -> tuple[float, np.ndarray]:
+def coherence(regression: Regression, terms: Terms) -> tuple[float, np.ndarray]:
     """(p, direction): p of the lowest frequencies' correlation between axes, and their common
     direction in dps.
 
@@ -31,13 +34,13 @@ def coherence(regression, terms) -> tuple[float, np.ndarray]:
     return min(p, 1.0), low.T @ low / len(low)
 
 
-def _scaled(regression, fit, i, residual):
+def _scaled(regression: Regression, fit: Fit, i: int, residual: np.ndarray) -> np.ndarray:
     spectrum = regression.whiteners[i].spectrum
     own = np.column_stack([spectrum[g] for g in fit.base.best])[: len(residual)]
     return residual / np.sqrt(own) / regression.scale[i]
 
 
-def turned_axes(regression, terms) -> np.ndarray:
+def turned_axes(regression: Regression, terms: Terms) -> np.ndarray:
     """(3, 3) axes scaled to equal white noise, the first along what is common to the lowest
     frequencies.
     """

@@ -46,10 +46,10 @@ class Whitener:
         own = self._summed(groups[:, :, :, None] * groups[:, :, None, :])
         return self._pairs(fixed, fixed), self._pairs(tried, fixed), own
 
-    def _pairs(self, left, right):
+    def _pairs(self, left: np.ndarray, right: np.ndarray) -> np.ndarray:
         return self._summed(left[:, :, None] * right[:, None, :])
 
-    def _summed(self, values):
+    def _summed(self, values: np.ndarray) -> np.ndarray:
         flat = self.weight @ values.reshape(len(values), -1)
         return flat.reshape(len(self.weight), *values.shape[1:])
 
@@ -74,10 +74,12 @@ class GappyWhitener(Whitener):
         self._known: dict[bytes, np.ndarray] = {}
         self._most = _MOST_KEPT_BYTES // (8 * len(self.spectrum) * max(self.coefficients, 1))
 
-    def prepare(self, columns):
+    def prepare(self, columns: np.ndarray) -> np.ndarray:
         return self._keep.T @ columns[self.available]
 
-    def products(self, fixed, tried, size=1):
+    def products(
+        self, fixed: np.ndarray, tried: np.ndarray, size: int = 1
+    ) -> tuple[np.ndarray, ...]:
         white = self._whitened(fixed)
         both = white @ white.transpose(0, 2, 1)
         shape = len(self.whitening), tried.shape[1]
@@ -91,7 +93,7 @@ class GappyWhitener(Whitener):
             groups[g] = each @ each.transpose(0, 2, 1)
         return both, cross, groups
 
-    def _whitened(self, columns):
+    def _whitened(self, columns: np.ndarray) -> np.ndarray:
         """(shapes, K, N) of (N, K) columns; the same ones are asked for again and again."""
         keys = [c.tobytes() for c in columns.T]
         new = [i for i, key in enumerate(keys) if key not in self._known]
@@ -112,7 +114,7 @@ class BridgedWhitener(Whitener):
     alike.
     """
 
-    def prepare(self, columns):
+    def prepare(self, columns: np.ndarray) -> np.ndarray:
         at, there = np.arange(self.n), np.flatnonzero(self.available)
         filled = [np.interp(at, there, c[there]) for c in columns.T]
         return noise.transform(np.column_stack(filled)) if filled else np.zeros((self.n - 1, 0))
@@ -130,7 +132,7 @@ def whitener(available: np.ndarray, few: bool = False) -> Whitener:
     return known
 
 
-def _new(available) -> type[Whitener]:
+def _new(available: np.ndarray) -> type[Whitener]:
     if available.all():
         return Whitener
     return BridgedWhitener if can_be_bridged(available) else GappyWhitener
@@ -163,7 +165,11 @@ class CrossProducts:
 
 
 def cross_products(
-    whiteners: list[Whitener], y: list, z: list, x: list | None = None, size: int = 1
+    whiteners: list[Whitener],
+    y: list[np.ndarray],
+    z: list[np.ndarray],
+    x: list[np.ndarray] | None = None,
+    size: int = 1,
 ) -> CrossProducts:
     """Products of prepared columns, a session an entry: y (N, A), z (N, J), x (N, K); of x each so
     many are one candidate."""

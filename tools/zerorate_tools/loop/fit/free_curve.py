@@ -7,13 +7,15 @@ is the mean over all of them (`fit/shrunk.py`; Rasmussen and Williams, Gaussian 
 Machine Learning, 2006, 2.7).
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from ...model.model import TABLE_POINTS
 from ...model.term import Term, Terms
-from ..read.sessions import block_basis
+from ..read.sessions import Session, block_basis
+from .regression import Regression
 from .shrunk import shrink
 from .smooth import LENGTHS, by_likelihood, matern
 
@@ -47,7 +49,7 @@ def is_curve(terms: Terms) -> bool:
     return len(terms) > 1 and all(t.table for t in terms)
 
 
-def draw(regression, beside: Terms, term: Term) -> tuple[Term, float]:
+def draw(regression: Regression, beside: Terms, term: Term) -> tuple[Term, float]:
     """The term with the curve that the recordings tell beside other terms, in one form for all
     axes; and the share of the squares that is lost where these follow curves of different forms."""
     each = [replace(term, table=tuple(point.tolist())) for point in np.eye(TABLE_POINTS)]
@@ -62,7 +64,7 @@ def draw(regression, beside: Terms, term: Term) -> tuple[Term, float]:
     return replace(term, table=tuple(table.tolist())), float(squares[:-1].sum() / squares.sum())
 
 
-def _values(regression, beside, each) -> np.ndarray:
+def _values(regression: Regression, beside: Terms, each: Terms) -> np.ndarray:
     """(points, 3) dps of the curve at its points."""
     at = np.linspace(-1.0, 1.0, len(each))
     every = [*beside, *each]
@@ -78,7 +80,7 @@ def _values(regression, beside, each) -> np.ndarray:
     return by_likelihood(told, curves)
 
 
-def _products(each, sessions) -> np.ndarray:
+def _products(each: Terms, sessions: Sequence[Session]) -> np.ndarray:
     """(points, points) of what 1 at each point adds to the blocks, offsets aside."""
     rows = [np.column_stack([block_basis(t, s) for t in each]) for s in sessions]
     added = np.vstack([s.less_offsets(r, s.available)[s.available] for r, s in zip(rows, sessions)])

@@ -1,11 +1,15 @@
 """Confidence intervals of an RMS over autocorrelated blocks."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 _LENGTH, _DRAWS = 15, 400
 
 
-def block_bootstrap(parts: list[np.ndarray], statistic) -> tuple[np.ndarray, np.ndarray]:
+def block_bootstrap(
+    parts: list[np.ndarray], statistic: Callable[[np.ndarray], np.ndarray]
+) -> tuple[np.ndarray, np.ndarray]:
     """2.5 % and 97.5 % points of a statistic of (n, ...) rows drawn in runs (Kuensch 1989).
 
     parts: one array a session, rows in time order, NaN rows dropped; statistic: of the rows drawn.

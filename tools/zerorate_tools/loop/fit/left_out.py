@@ -3,7 +3,10 @@
 import numpy as np
 
 from ...model.term import Terms
+from .cross_products import CrossProducts
 from .free_curve import is_curve
+from .likelihood import Base
+from .regression import Regression
 from .shrunk import has_play_operators, shrink
 
 #: Of coefficients about zero, over their size in all sessions: wide, so that only what the other
@@ -11,7 +14,9 @@ from .shrunk import has_play_operators, shrink
 _SPREAD = 3.0
 
 
-def precision_of(regression, g, base, terms: Terms, own: slice) -> np.ndarray:
+def precision_of(
+    regression: Regression, g: CrossProducts, base: Base, terms: Terms, own: slice
+) -> np.ndarray:
     """(A, J) of coefficients about zero, over the white part of the noise: of the own ones of a
     candidate wide, as large as all sessions show them; of the parts of a curve, and of play
     operators, as large as is likely.
@@ -28,14 +33,16 @@ def precision_of(regression, g, base, terms: Terms, own: slice) -> np.ndarray:
     return np.where(shrunk > 0, shrunk, out)
 
 
-def of_plays(g, scale: np.ndarray, terms: Terms) -> np.ndarray:
+def of_plays(g: CrossProducts, scale: np.ndarray, terms: Terms) -> np.ndarray:
     """(A, J) precision of play operators among terms, as `precision_of`; zero of all else."""
     if not has_play_operators(terms):
         return np.zeros((scale.shape[1], g.zz.shape[-1]))
     return shrink(g, scale, terms).precision
 
 
-def fitted_without(g, s: int, a: int, c: int, scale: np.ndarray, precision=None):
+def fitted_without(
+    g: CrossProducts, s: int, a: int, c: int, scale: np.ndarray, precision: np.ndarray | None = None
+) -> np.ndarray:
     """(J,) coefficients of an axis at a colour, fitted on the other sessions than s; arguments as
     for `session_misfit`, precision of this axis.
     """
@@ -47,7 +54,14 @@ def fitted_without(g, s: int, a: int, c: int, scale: np.ndarray, precision=None)
     return np.linalg.lstsq(zz, w @ g.zy[others, c, :, a], rcond=1e-12)[0]
 
 
-def session_misfit(g, s: int, colour, variance, scale: np.ndarray, precision=None) -> float:
+def session_misfit(
+    g: CrossProducts,
+    s: int,
+    colour: np.ndarray,
+    variance: np.ndarray,
+    scale: np.ndarray,
+    precision: np.ndarray | None = None,
+) -> float:
     """Weighted squares of session s left by coefficients fitted on the other sessions.
 
     colour: (A,) grid index and variance: (A,) dps^2 at which every fit is weighted; scale: (S, A);
@@ -62,7 +76,7 @@ def session_misfit(g, s: int, colour, variance, scale: np.ndarray, precision=Non
     return float(total)
 
 
-def gains(regression, terms, candidate) -> np.ndarray:
+def gains(regression: Regression, terms: Terms, candidate: Terms) -> np.ndarray:
     """(S,) nats by which each session, left out, is better predicted with the candidate than
     without.
 

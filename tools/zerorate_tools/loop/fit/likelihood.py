@@ -34,7 +34,7 @@ class Base:
     rss: np.ndarray
     loglik: np.ndarray
     coefficients: np.ndarray
-    inverse: list
+    inverse: list[np.ndarray]
     count: int
 
     @property
@@ -63,7 +63,7 @@ class Base:
         return float(self.loglik.max(axis=1).sum())
 
 
-def _loglik(rss, logdet, count, scale_term):
+def _loglik(rss: np.ndarray, logdet: np.ndarray, count: int, scale_term: float) -> np.ndarray:
     prior = LOG_PRIOR.reshape(-1, *[1] * (rss.ndim - 1))
     return prior - 0.5 * count * np.log(np.maximum(rss, 1e-300) / count) - 0.5 * logdet - scale_term
 

@@ -5,14 +5,14 @@ The loop's effects are fitted by generalised least squares; what is learned on t
 before and after are both judged with an ordinary least-squares line on the rates less the effects.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Sequence
 
 import numpy as np
 
 from ...model.term import Term, Terms
-from ..read.sessions import block_basis
+from ..read.sessions import Session, block_basis
 from .regression import Regression, predicted
-from .shrunk import has_play_operators, shrink
+from .shrunk import shrink
 from .smooth import curve_of, smooth
 
 #: Of the squared coefficients of play operators, in units of their columns, per block.
@@ -31,7 +31,12 @@ def less_slope(straight: Terms, terms: Terms) -> tuple[Term, ...]:
     return () if any(is_slope(t) for t in terms) else tuple(straight)
 
 
-def ordinary(terms, sessions, effects=(), coefficients=None) -> np.ndarray:
+def ordinary(
+    terms: Terms,
+    sessions: Sequence[Session],
+    effects: Terms = (),
+    coefficients: Collection[np.ndarray] = (),
+) -> np.ndarray:
     """(terms, 3) dps per unit by least squares over blocks, an offset a session, effects subtracted
     first; play operators, which are much alike, are shrunk a little, and bends made smooth.
     """
@@ -82,28 +87,3 @@ def with_line(straight: Terms, terms: Terms, applied: np.ndarray) -> np.ndarray:
     slopes = [row for t, row in zip(terms, applied) if is_slope(t)]
     line = np.ones(3) - np.max(slopes, axis=0, initial=0.0)
     return np.vstack([*([line] * len(straight)), applied])
-
-
-def deployed(selection, effects: bool = True) -> tuple[list, np.ndarray]:
-    """Terms and (terms, 3) coefficients as deployed: the line first, then the effects if wanted.
-
-    Those of a single recording are learned like the line: there the noise's walk is the bend.
-    """
-    straight, terms = list(selection.straight), list(selection.terms) if effects else []
-    sessions, every = selection.regression.sessions, [*straight, *terms]
-    if not every:
-        return [], np.zeros((0, 3))
-    applied = with_line(straight, terms, selection.applied if effects else np.ones((0, 3)))
-    fitted = by_axis(_fit_of(selection), every, applied)[len(straight) :]
-    if not straight:
-        return terms, fitted
-    return every, np.vstack([ordinary(straight, sessions, terms, fitted), fitted])
-
-
-def _fit_of(selection):
-    regression = selection.regression
-    if has_play_operators(selection.terms) and not selection.stands_alone:
-        return lambda terms: shrunk(regression, terms)
-    if selection.alone:
-        return lambda terms: ordinary(terms, regression.sessions)
-    return lambda terms: regression.fit(terms).coefficients

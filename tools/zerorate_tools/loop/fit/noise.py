@@ -1,5 +1,5 @@
 """The colour of the noise in the DCT of a session: white + flicker + random walk, or something
-steeper; and the floor below which it lets no correction go.
+steeper.
 
 Random walk is exactly diagonal in a DCT-II without its mean (the DCT-II diagonalises D'D of the
 first difference D), white noise too; flicker is taken as the square root of the random walk's
@@ -10,8 +10,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.fft import dct
-
-from ...allan import Noise
 
 _FLICKER = (0.0, 0.01, 0.03, 0.08, 0.2, 0.5, 1.3, 3.5)
 _WALK = (0.0, 0.004, 0.012, 0.03, 0.07, 0.15, 0.4, 1.0, 3.0)
@@ -68,28 +66,3 @@ def spectra(n: int) -> np.ndarray:
 def transform(columns: np.ndarray) -> np.ndarray:
     """Orthonormal DCT-II along the first axis, its mean (the turn-on offset) left out."""
     return dct(columns, axis=0, norm="ortho")[1:]
-
-
-def noise_of(regression, terms) -> list[Noise]:
-    """White, flicker and random walk of each sensor axis, by maximum likelihood over the colour
-    grid.
-
-    Steep colours are left out: they stand for causes not found, and the floor is what cannot be
-    removed.
-    """
-    with regression.in_sensor_axes():
-        base = regression.fit(terms).base
-    block_s = regression.sessions[0].block_s
-    out = []
-    for a in range(3):
-        g = int(np.where(IS_STEEP, -np.inf, base.loglik[a]).argmax())
-        white = np.sqrt(base.rss[a, g] / base.count)
-        shape = GRID[g]
-        out.append(Noise(block_s, white, white * np.sqrt(shape.flicker), white * shape.walk))
-    return out
-
-
-def floor_dps(regression, terms) -> np.ndarray:
-    """(3,) lowest Allan deviation of each axis' noise within a session's length."""
-    longest = max(s.blocks * s.block_s for s in regression.sessions)
-    return np.array([n.floor_dps(longest) for n in noise_of(regression, terms)])

@@ -1,24 +1,29 @@
 """The sessions of one device made ready for fits: residual and columns prepared, axes perhaps
-turned.
+turned; and their noise, with the floor below which it lets no correction go.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.ndimage import median_filter
 
-from ...model.term import Term
+from ...allan import Noise
+from ...model.term import Term, Terms
 from ..read.sessions import Session, block_basis
 from .cross_products import CrossProducts, cross_products, whitener
 from .likelihood import Base, fit_base, ratios, session_scale
+from .noise import GRID, IS_STEEP
 
 #: Times the usual distance from the median of so many neighbours.
 _OUTLIER, _NEAR = 6.0, 9
 #: By how much squares of acceleration are shrunk, of their own whitened squares: at rest their sum
 #: is gravity's, a constant, and beside acceleration nothing but noise tells its coefficient.
 _SUM_OF_SQUARES = 1e-3
+
+#: Further nuisances: blocks of each session, or these prepared.
+Events = list[list[np.ndarray]]
 
 
 @dataclass
@@ -48,13 +53,13 @@ class Regression:
         self.axes = np.eye(3)
         self._precision: Mapping[Term, float] = {}
         self._cache: dict[Term, list[np.ndarray]] = {}
-        self._extra: list[list[np.ndarray]] = []
+        self._extra: Events = []
         self.prepare()
         self.scale = np.ones((len(sessions), 3))
         self._known = self._of_steps()
         self._extra = list(self._known)
 
-    def _of_steps(self):
+    def _of_steps(self) -> Events:
         """Prepared columns of the steps that the sessions are already without."""
         out = []
         for i, s in enumerate(self.sessions):
@@ -99,21 +104,21 @@ class Regression:
         """Drop a term tried once, so that a search does not grow the cache."""
         self._cache.pop(term, None)
 
-    def events(self) -> list[list[np.ndarray]]:
+    def events(self) -> Events:
         """The further nuisances, prepared."""
         return list(self._extra)
 
-    def set_events(self, columns: list[list[np.ndarray]], kept: list | None = None) -> None:
+    def set_events(self, columns: Events, kept: Events | None = None) -> None:
         """Replace the further nuisances by (n,) blocks of each session. kept: prepared ones that
         stay."""
         prepared = [self._prepared(blocks) for blocks in columns]
         self._extra = [*(self._known if kept is None else kept), *prepared]
 
-    def _prepared(self, blocks) -> list[np.ndarray]:
+    def _prepared(self, blocks: Iterable[np.ndarray]) -> list[np.ndarray]:
         """(N,) of each session's (n,) blocks."""
         return [w.prepare(b[:, None])[:, 0] for w, b in zip(self.whiteners, blocks)]
 
-    def stack(self, terms) -> list[np.ndarray]:
+    def stack(self, terms: Terms) -> list[np.ndarray]:
         """(N, J) columns of the terms and the events, a session each."""
         columns = [self.columns(t) for t in terms] + self._extra
         return [
@@ -121,7 +126,9 @@ class Regression:
             for i in range(len(self.sessions))
         ]
 
-    def cross_products(self, terms, candidates=None) -> CrossProducts:
+    def cross_products(
+        self, terms: Terms, candidates: Sequence[Terms] | None = None
+    ) -> CrossProducts:
         """Products of residual, terms and candidates: tuples of equally many terms."""
         x, size = None, 1
         if candidates:
@@ -136,24 +143,24 @@ class Regression:
             self._shrink(out.xx[:, :, k], c)
         return out
 
-    def _shrink(self, products: np.ndarray, terms) -> None:
+    def _shrink(self, products: np.ndarray, terms: Terms) -> None:
         """Shrink terms that are the first of (S, ..., J, J), each session's share of it alike."""
         for i, term in enumerate(terms):
             if term.source.startswith("acc_") and term.power == 2:
                 products[..., i, i] *= 1.0 + _SUM_OF_SQUARES
             products[..., i, i] += self._precision.get(term, 0.0) / len(self.sessions)
 
-    def fit(self, terms) -> Fit:
+    def fit(self, terms: Terms) -> Fit:
         """Joint fit with the noise's colour refitted."""
         base = fit_base(self.cross_products(terms), self.scale)
         own = base.fitted[:, : len(terms)]
         return Fit(np.linalg.solve(self.axes, own).T, base, base.total)
 
-    def left(self, terms, fit: Fit) -> list[np.ndarray]:
+    def left(self, terms: Terms, fit: Fit) -> list[np.ndarray]:
         """(N, A) prepared residual of each session beside what was fitted."""
         return [y - z @ fit.base.fitted.T for y, z in zip(self.y, self.stack(terms))]
 
-    def settle(self, terms) -> None:
+    def settle(self, terms: Terms) -> None:
         """Hold outlying blocks at their neighbours and weigh the sessions, both given the terms."""
         coefficients = self.fit(terms).coefficients
         self.outliers = 0
@@ -165,7 +172,7 @@ class Regression:
         self.prepare()
         self.scale = session_scale(self.cross_products(terms))
 
-    def gains(self, terms, candidates, chunk: int = 400) -> np.ndarray:
+    def gains(self, terms: Terms, candidates: Sequence[Terms], chunk: int = 400) -> np.ndarray:
         """(K, A) likelihood ratio of each candidate's columns beside the terms. candidates: tuples
         of terms.
         """
@@ -179,7 +186,7 @@ class Regression:
         return np.maximum(out, 0.0)
 
 
-def predicted(terms, coefficients: np.ndarray, session: Session) -> np.ndarray:
+def predicted(terms: Terms, coefficients: Collection[np.ndarray], session: Session) -> np.ndarray:
     """(n, 3) dps that terms with (terms, 3) coefficients add to the bias of each block."""
     out = np.zeros((session.blocks, 3))
     for term, c in zip(terms, coefficients):
@@ -203,3 +210,28 @@ def _without_outliers(residual: np.ndarray) -> tuple[np.ndarray, int]:
         out[np.flatnonzero(good)[bad], a] = middle[bad]
         count += int(bad.sum())
     return out, count
+
+
+def noise_of(regression: Regression, terms: Terms) -> list[Noise]:
+    """White, flicker and random walk of each sensor axis, by maximum likelihood over the colour
+    grid.
+
+    Steep colours are left out: they stand for causes not found, and the floor is what cannot be
+    removed.
+    """
+    with regression.in_sensor_axes():
+        base = regression.fit(terms).base
+    block_s = regression.sessions[0].block_s
+    out = []
+    for a in range(3):
+        g = int(np.where(IS_STEEP, -np.inf, base.loglik[a]).argmax())
+        white = np.sqrt(base.rss[a, g] / base.count)
+        shape = GRID[g]
+        out.append(Noise(block_s, white, white * np.sqrt(shape.flicker), white * shape.walk))
+    return out
+
+
+def floor_dps(regression: Regression, terms: Terms) -> np.ndarray:
+    """(3,) lowest Allan deviation of each axis' noise within a session's length."""
+    longest = max(s.blocks * s.block_s for s in regression.sessions)
+    return np.array([n.floor_dps(longest) for n in noise_of(regression, terms)])

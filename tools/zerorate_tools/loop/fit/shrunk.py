@@ -17,6 +17,7 @@ from ...model.term import Terms
 from .cross_products import CrossProducts
 from .likelihood import TINY
 from .noise import LOG_PRIOR
+from .regression import Regression
 
 #: Variance of what all operators, or waves, add, of that of a block's white noise; and of it, that
 #: of squares.
@@ -41,7 +42,7 @@ class Shrunk:
 
 
 def shrink(
-    g: CrossProducts, scale: np.ndarray, terms: Terms, own=None, alike: bool = True
+    g: CrossProducts, scale: np.ndarray, terms: Terms, own: slice | None = None, alike: bool = True
 ) -> Shrunk:
     """Terms fitted to products of them, which are the first of the columns.
 
@@ -70,7 +71,7 @@ def shrink(
     return Shrunk(mean, np.array(precisions)[likely.argmax(axis=0)], total)
 
 
-def _groups(terms, columns: int, own: slice | None) -> list[np.ndarray]:
+def _groups(terms: Terms, columns: int, own: slice | None) -> list[np.ndarray]:
     """(columns,) of zero and one: the play operators, and their squares where there are any."""
     shrunk = [t.memory == "play" for t in terms]
     if own is not None:
@@ -79,7 +80,7 @@ def _groups(terms, columns: int, own: slice | None) -> list[np.ndarray]:
     return [np.array(powers) == p for p in sorted({*powers} - {0})]
 
 
-def evidence(regression, terms: Terms, candidate: Terms) -> float:
+def evidence(regression: Regression, terms: Terms, candidate: Terms) -> float:
     """Nats by which a candidate of any size is likelier beside terms than none."""
     every, own = [*terms, *candidate], slice(len(terms), None)
     return shrink(regression.cross_products(every), regression.scale, every, own).nats

@@ -72,7 +72,7 @@ def pass_of(session: Session) -> np.ndarray:
     return np.searchsorted(ends, np.arange(len(degc)))
 
 
-def _way(session, there):
+def _way(session: Session, there: np.ndarray) -> np.ndarray:
     """(blocks,) of mean 1: by how much time and temperature go on with each block."""
     if "temp" not in session.sources:
         return np.ones(len(there))
@@ -120,7 +120,8 @@ class PiecesByLine:
         return other
 
     def _leave_out(self, fold: np.ndarray) -> None:
-        self.fold, self._known = fold, dict[tuple, np.ndarray]()
+        self.fold = fold
+        self._known: dict[tuple[tuple[Term, ...], bytes | None], np.ndarray] = {}
         near = np.ones(2 * gap_blocks(self.session) + 1, bool)
         left = [fold == k for k in range(fold.max() + 1)]
         self.parts = [_only(self.session, ~binary_dilation(one, near)) for one in left]
@@ -160,7 +161,7 @@ class PiecesByLine:
         return out
 
     def fitted_to(
-        self, part: Session, straight, terms, applied=None
+        self, part: Session, straight: Terms, terms: Terms, applied: np.ndarray | None = None
     ) -> tuple[list[Term], np.ndarray]:
         """(terms, (terms, 3) dps per unit) fitted to a part of the recording and to others beside
         it, the line first.
@@ -185,7 +186,7 @@ class PiecesByLine:
             fit = partial(shrunk, Regression(fitted, few=True))
         return every, by_axis(fit, every, with_line(straight, terms, each))
 
-    def _squares(self, left):
+    def _squares(self, left: np.ndarray) -> np.ndarray:
         """(folds, 3) sums of squares; infinite where there is nothing to sum."""
         squares = np.where(self.session.available[:, None], left**2, 0.0)
         sums = [squares[self.fold == k].sum(axis=0) for k in range(len(self.parts))]

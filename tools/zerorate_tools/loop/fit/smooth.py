@@ -49,7 +49,7 @@ def smooth(terms: Terms, own: Sequence[int], sessions: Sequence[Session]) -> np.
     return out
 
 
-def _corners(terms) -> np.ndarray:
+def _corners(terms: Terms) -> np.ndarray:
     """(terms + 1,) degC at which the segments begin and end."""
     knots = terms[0].centre + np.array([t.knot for t in terms[1:]])
     apart = knots[1] - knots[0]

@@ -14,8 +14,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import gamma
 
+from ...model.term import Terms
 from .cross_products import cross_products
 from .likelihood import fit_base, ratios
+from .regression import Regression
 
 #: So many that mean and variance, and with them the decision, hardly hang on the draw: 2 and 6 %.
 COUNT = 1500
@@ -48,7 +50,7 @@ class NullRatios:
         return float(gamma.sf(ratio, columns * self.mean / scale, scale=scale))
 
 
-def null_ratios(regression, terms, candidate, pool) -> NullRatios:
+def null_ratios(regression: Regression, terms: Terms, candidate: Terms, pool: Terms) -> NullRatios:
     """Ratios that surrogates reach on what a candidate leaves. pool: terms to make them from."""
     rng = np.random.default_rng(0)
     every = [*terms, *candidate]

@@ -1,6 +1,6 @@
 """What recordings in motion show of the nine entries, and whether it holds on windows held out."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -9,7 +9,7 @@ from scipy.stats import chi2
 from .columns import MATRIX
 from .device import LEVEL, Shown, check_one_device, device_of, groups
 from .heading import heading_lost
-from .matrix import FOLDS, beside, by_recording, fit, of_what_shows_more
+from .matrix import FOLDS, Fitted, beside, by_recording, fit, of_what_shows_more
 from .moving import Moving, check_axes
 
 
@@ -96,6 +96,9 @@ _NO_WORSE = {GIVEN: 1.02, GRAVITY: 1.0}
 #: Of the whole matrix: a part that is smaller is not named.
 _TRIFLE = 0.1
 
+#: A recording, the fold of it that is judged, None for all, and entries (9,) by others.
+_Judged = tuple[Fitted, int | None, np.ndarray]
+
 
 def by_windows(train: list[Moving], holdout: list[Moving]) -> RateScale | None:
     """The matrix of the recordings to fit, judged on windows held out and on the heading where an
@@ -125,7 +128,9 @@ def _judged_by_heading(shown: RateScale, train: list[Moving], holdout: list[Movi
     return replace(shown, heading=heading, worse=worse, gains=np.r_[shown.gains, gains])
 
 
-def _left_out(shown, train, holdout) -> Iterator[tuple[Moving, np.ndarray]]:
+def _left_out(
+    shown: RateScale, train: list[Moving], holdout: list[Moving]
+) -> Iterator[tuple[Moving, np.ndarray]]:
     """Recordings with an attitude, beside a matrix that they were not fitted to: each that is held
     out, else each beside the others, one alone its second half beside its first."""
     if holdout:
@@ -143,7 +148,9 @@ def _deployed(train: list[Moving]) -> np.ndarray:
     return shown.deployed if shown is not None else np.zeros((3, 3))
 
 
-def _by_others(statements: Mapping[str, Shown], headings: Mapping[str, np.ndarray]):
+def _by_others(
+    statements: Mapping[str, Shown], headings: Mapping[str, np.ndarray]
+) -> dict[str, np.ndarray]:
     """Name -> (3, 3) what would be deployed by all recordings but this one, linear about the matrix
     of all."""
     names = statements.keys() if len(statements) > 1 else ()
@@ -169,7 +176,7 @@ def _by_windows(train: list[Moving], holdout: list[Moving]) -> RateScale | None:
     ways = [way for m in holdout for way in m.measured]
     held = [f for f in (beside(m, matrix) for m in ways) if f is not None]
     left_out = list(_folds(fitted, matrix, share))
-    judged = [(f, None, share * entries) for f in held] or left_out
+    judged: list[_Judged] = [(f, None, share * entries) for f in held] or left_out
     if not judged:
         return None
     gain, predicted = (_gain(some, matrix) for some in (judged, left_out))
@@ -208,7 +215,7 @@ def _by_windows(train: list[Moving], holdout: list[Moving]) -> RateScale | None:
 _FAINT = np.eye(MATRIX) * 1e-2
 
 
-def _folds(fitted, matrix, share):
+def _folds(fitted: list[Fitted], matrix: np.ndarray, share: float) -> Iterator[_Judged]:
     """Each recording's part held out, with the entries that all other parts show."""
     for k in range(FOLDS):
         left = [f for f in fitted if (f.folds == k).any() and (f.folds != k).any()]
@@ -218,17 +225,17 @@ def _folds(fitted, matrix, share):
             yield from ((f, k, share * entries) for f in left)
 
 
-def _gain(judged, matrix) -> float:
+def _gain(judged: Iterable[_Judged], matrix: np.ndarray) -> float:
     """Nats by which entries are likelier than none in parts that they were not fitted to."""
     return float(sum(f.shown(matrix, k).gain(m) for f, k, m in judged))
 
 
-def _tilt(parts) -> float:
+def _tilt(parts: Sequence[np.ndarray]) -> float:
     tilt, worth = np.concatenate([np.zeros((0, 2)), *parts]).T
     return float(np.sqrt(worth @ tilt**2 / worth.sum())) if worth.any() else float("nan")
 
 
-def _kind(entries, covariance) -> str:
+def _kind(entries: np.ndarray, covariance: np.ndarray) -> str:
     """Which of the three it is, by what its own entries are worth; all that are clear and no trifle
     beside the others."""
     said = []

@@ -107,7 +107,7 @@ def _apart(off: np.ndarray) -> np.ndarray:
     return Rotation.from_quat(turned).as_rotvec()
 
 
-def columns_of(moving: Moving, matrix, own) -> Columns:
+def columns_of(moving: Moving, matrix: np.ndarray, own: np.ndarray) -> Columns:
     """What each error does to a recording, with the matrix and its own errors (18,) taken out.
 
     Titterton and Weston 2004, 12.3: an error of the rate e turns the frame by the integral of R e.
@@ -149,7 +149,9 @@ def _loud(seen: np.ndarray, step_s: float) -> np.ndarray:
     return np.fft.irfft(spectrum * np.interp(at, hz, gain)[:, None], len(seen), axis=0)
 
 
-def _chunk_of(moving, span, per, attitude, matrix, own):
+def _chunk_of(
+    moving: Moving, span: slice, per: int, attitude: np.ndarray, matrix: np.ndarray, own: np.ndarray
+) -> tuple[np.ndarray, list[np.ndarray], np.ndarray, np.ndarray, np.ndarray]:
     """The attitudes of a chunk; of each step the turns until its end and their mean within it,
     what a delay adds, the specific force, and columns of what is no rate."""
     dt_s, measured, accel = moving.dt_s, moving.rate[span], moving.accel[span]
@@ -220,7 +222,7 @@ def _by_rate(sums: np.ndarray) -> np.ndarray:
     return np.concatenate([turned, sums[..., 3], sums[..., 4]], axis=2)
 
 
-def _shapes():
+def _shapes() -> np.ndarray:
     """(5, 3, 3) scales and cross-axis of an accelerometer, without its scale common to the axes:
     that is gravity's own size."""
     shapes = np.zeros((5, 3, 3))

@@ -1,6 +1,6 @@
 """One device's matrix from what each of its recordings states, and whether they are of one."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import reduce
 from itertools import product
@@ -117,7 +117,9 @@ def device_of(statements: Sequence[Shown], large: bool = False) -> Device:
     return Device(mean, spread, cases[int(weight.argmax())].shown, nats, weight, cases)
 
 
-def _mixed(weight: np.ndarray, means: np.ndarray, covariances: np.ndarray):
+def _mixed(
+    weight: np.ndarray, means: np.ndarray, covariances: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Mean (9,) and covariance (9, 9) of a mixture of (k, 9) and (k, 9, 9)."""
     mean = weight @ means
     apart = means - mean
@@ -125,7 +127,7 @@ def _mixed(weight: np.ndarray, means: np.ndarray, covariances: np.ndarray):
     return mean, spread + np.einsum("k,ki,kj->ij", weight, apart, apart)
 
 
-def _case(statements, sigma, large) -> _Case:
+def _case(statements: Sequence[Shown], sigma: float, large: bool) -> _Case:
     """Under one scatter, averaged over the sizes."""
     parts = [s.scattered(sigma) for s in statements]
     shown = sum((p[0] for p in parts), Shown())
@@ -136,7 +138,7 @@ def _case(statements, sigma, large) -> _Case:
     return _Case(sigma, statements, shown, evidence, mean, spread)
 
 
-def _posteriors(shown: Shown, nats: np.ndarray):
+def _posteriors(shown: Shown, nats: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Evidence, mean and covariance of the entries under each of the sizes. nats: (150,) before."""
     inner = np.eye(MATRIX) + _ROOTS @ shown.normal @ _ROOTS
     covariance = _ROOTS @ np.linalg.solve(inner, _ROOTS)
@@ -210,11 +212,11 @@ def check_one_device(statements: Sequence[tuple[str, Shown]]) -> None:
         raise DifferentDevices([s.names for s in sides], _unsure(every, sides, scatter))
 
 
-def _parts(sides) -> float:
+def _parts(sides: Sequence[_Together]) -> float:
     return sides[0].apart + sides[1].apart
 
 
-def _splits(every):
+def _splits(every: Sequence[_Together]) -> Iterator[list[_Together]]:
     """All ways to part up to ten recordings in two; of more, each against the others."""
     number = len(every)
     masks = range(1, 2 ** (number - 1)) if number <= 10 else [1 << k for k in range(number)]
@@ -222,12 +224,12 @@ def _splits(every):
         yield _parted(every, [bool(mask >> k & 1) for k in range(number)])
 
 
-def _parted(every, first):
+def _parted(every: Sequence[_Together], first: Sequence[bool]) -> list[_Together]:
     sides = [[s for s, is_first in zip(every, first) if is_first == side] for side in (True, False)]
     return [reduce(_joined, side) for side in sides]
 
 
-def _unsure(every, sides, scatter) -> list[str]:
+def _unsure(every: Sequence[_Together], sides: Sequence[_Together], scatter: float) -> list[str]:
     """Names of those that on the other side would hardly be worse."""
     first = [s.names[0] in sides[0].names for s in every]
     names = []

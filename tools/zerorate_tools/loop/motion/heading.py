@@ -29,7 +29,7 @@ def heading_lost(
     return float(before), float(after)
 
 
-def _weights(squares: NDArray) -> NDArray[np.float64]:
+def _weights(squares: NDArray[np.float64]) -> NDArray[np.float64]:
     """(k,) weight of each stretch: an error that is large without and with the matrix is the
     attitude's own (Student's t, as in `matrix._weigh`). squares: (2, k) without and with."""
     least, weight = squares.min(axis=0), np.ones(squares.shape[1])
@@ -39,7 +39,7 @@ def _weights(squares: NDArray) -> NDArray[np.float64]:
     return weight
 
 
-def _lost(one: Moving, matrix: NDArray) -> NDArray[np.float64]:
+def _lost(one: Moving, matrix: NDArray[np.float64]) -> NDArray[np.float64]:
     """(k,) degrees of heading a second that each moving stretch loses against the attitude.
 
     The bias is what gravity finds beside the matrix; a constant turn between the attitude's frame
@@ -63,7 +63,7 @@ def _lost(one: Moving, matrix: NDArray) -> NDArray[np.float64]:
     return np.degrees((left * first.inv()).as_rotvec()[:, 2]) / _STRETCH_S
 
 
-def _stretches(one: Moving, seen: NDArray) -> list[tuple[int, int]]:
+def _stretches(one: Moving, seen: NDArray[np.bool_]) -> list[tuple[int, int]]:
     """First and last sample of stretches that move, each a quarter on, seen at both ends."""
     n = round(_STRETCH_S / one.dt_s)
     every = [(a, a + n) for a in range(0, len(one.rate) - n, n // 4)]

@@ -53,7 +53,7 @@ class Fitted:
         held = np.pad(self.folds == fold, 1)
         return self._of(matrix, ~(held[:-2] | held[1:-1] | held[2:]))
 
-    def normal(self, take) -> tuple[np.ndarray, np.ndarray]:
+    def normal(self, take: np.ndarray | slice) -> tuple[np.ndarray, np.ndarray]:
         """(p, p) and (p,) normal equations of some windows, of its rests, and of what its own
         errors were before."""
         columns = self.rows.columns[take]
@@ -83,7 +83,7 @@ class Fitted:
         """Move its own errors to where they are likeliest beside a matrix moved by (3, 3)."""
         self.own[:TAKEN_OUT] += self.own_beside(step.ravel())[:TAKEN_OUT]
 
-    def _of(self, matrix, take) -> Shown:
+    def _of(self, matrix: np.ndarray, take: np.ndarray) -> Shown:
         normal, right = self.normal(take)
         own, back = normal[MATRIX:, MATRIX:], normal[:MATRIX, MATRIX:]
         bare = normal[:MATRIX, :MATRIX] - back @ np.linalg.solve(own, back.T)
@@ -170,7 +170,9 @@ def _known(f: Fitted) -> float:
     return float(np.linalg.slogdet(np.eye(MATRIX) + SIZES[-1] ** 2 * normal)[1])
 
 
-def _beside(moving, seconds, matrix, before) -> Fitted | None:
+def _beside(
+    moving: Moving, seconds: float, matrix: np.ndarray, before: Fitted | None
+) -> Fitted | None:
     own = np.zeros(sum(OWN.values())) if before is None else before.own.copy()
     longest = (s for s in reversed(_SECONDS) if s <= seconds)
     fit_in = (s for s in longest if len(moving.spans(s)) >= LEAST_WINDOWS)

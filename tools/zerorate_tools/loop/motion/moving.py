@@ -8,6 +8,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from ...recordings import open_recording
+from ...recordings.reading import OpenRecording
 from ...recordings.recording import ACCEL, GYRO, TIME
 from ...recordings.turning import axes_of, axes_words
 from ...simulate.attitude import IDENTITY, integrate, into_body, multiply, rotation
@@ -254,7 +255,9 @@ def _rests(ticks: Ticks, still: np.ndarray) -> np.ndarray:
     return np.array(rows).reshape(-1, 4)
 
 
-def _samples(opened, lsb_per_g, reference):
+def _samples(
+    opened: OpenRecording, lsb_per_g: float | None, reference: Reference
+) -> tuple[np.ndarray, ...]:
     """Times in us, rates and accelerations in LSB, and what the reference gives."""
     rows = []
     for batch in filter(lambda b: len(b[TIME]), opened.batches(rows=262_144)):

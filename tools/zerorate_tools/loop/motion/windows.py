@@ -60,7 +60,7 @@ class Rows:
     heading: np.ndarray
 
 
-def rows_of(moving: Moving, seconds: float, matrix, own) -> Rows | None:
+def rows_of(moving: Moving, seconds: float, matrix: np.ndarray, own: np.ndarray) -> Rows | None:
     """Of windows of so many seconds, and of turns between rests; None without a window."""
     spans = moving.spans(seconds)
     if not spans:
@@ -109,7 +109,9 @@ def _rests_beside_turns(columns: Columns, moving: Moving) -> list[tuple[np.ndarr
     return found
 
 
-def _between(columns: Columns, moving: Moving, before: np.ndarray, after: np.ndarray, q: int):
+def _between(
+    columns: Columns, moving: Moving, before: np.ndarray, after: np.ndarray, q: int
+) -> tuple[np.ndarray, np.ndarray]:
     """(q, 3) and (q, 3, p + 3) of gravity after a turn less gravity before it, as the last row:
     over what a data sheet lets the turn between be wrong by."""
     row = np.r_[np.full(len(before), -1 / len(before)), np.full(len(after), 1 / len(after))]

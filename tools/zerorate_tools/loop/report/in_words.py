@@ -1,9 +1,10 @@
 """A report in a few lines for a terminal."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ...numbers import fixed
+from .result import Effect, Event, Split
 
 
 def in_words(result: Mapping[str, Any]) -> str:
@@ -32,29 +33,30 @@ def in_words(result: Mapping[str, Any]) -> str:
     return "\n".join(lines)
 
 
-def _judged_on(split):
+def _judged_on(split: Split) -> str:
     names = ", ".join(split["test"])
     if "how_much_weaker" in split:
         return f"judged on pieces of {names}, each by a model fitted to the others"
     said = f"judged on {names}, which nothing was fitted to"
     if "pieces_of" not in split:
         return said
-    before, after = (_axes(split[f"pieces_{way}_mdps"]) for way in ("before", "after"))
+    pieces = split["pieces_before_mdps"], split["pieces_after_mdps"]
+    before, after = map(_axes, pieces)
     return f"{said}\nand on pieces of {', '.join(split['pieces_of'])}: {before} -> {after}"
 
 
-def _axes(mdps):
+def _axes(mdps: Sequence[float]) -> str:
     return "  ".join(f"{a} {v:8.3f}" for a, v in zip("xyz", mdps)) + "  mdps"
 
 
-def _effect(effect):
+def _effect(effect: Effect) -> str:
     each = effect.get("probabilities", {})
     tie = ": " + ", ".join(f"{name} {p:.2g}" for name, p in each.items()) if len(each) > 1 else ""
     said = effect["said"].removeprefix(effect["effect"]).strip()
     return f"found: {effect['effect']} {said}".rstrip() + f" ({effect['confidence']}){tie}"
 
 
-def _event(event):
+def _event(event: Event) -> str:
     sizes = ", ".join(fixed(v, 2, "+") for v in event["size_mdps"])
     at = event["t_us"] / 1e6
     said = f"; {event['said']}" if "said" in event else ""
@@ -62,7 +64,7 @@ def _event(event):
     return f"{where}: {sizes} mdps (listed, never corrected){said}"
 
 
-def _line(line):
+def _line(line: Mapping[str, Any]) -> str:
     sizes = ", ".join(f"{v:.2f}" for v in line["size_mdps"])
     return (
         f"a line at {line['hz']:.5g} Hz of {sizes} mdps (listed: it averages out of the bias; one "

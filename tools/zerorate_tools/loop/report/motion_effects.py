@@ -12,7 +12,7 @@ from ..search.periodic import QUICK_HZ
 from ..verify.analysis import Analysis
 
 
-def motion_effects(analysis: Analysis, after_mdps: list[float]) -> list[dict]:
+def motion_effects(analysis: Analysis, after_mdps: list[float]) -> list[dict[str, Any]]:
     """Effects in report.json's form. after_mdps: of the blocks held out: these leave it."""
     motion = analysis.motion
     same = {"before_mdps": after_mdps, "after_mdps": after_mdps, "confounded_with": []}
@@ -25,7 +25,7 @@ def motion_effects(analysis: Analysis, after_mdps: list[float]) -> list[dict]:
     return [*out, *({**_line(line, analysis.few), **same} for line in slow)]
 
 
-def interference(lines: list[Line]) -> list[dict]:
+def interference(lines: list[Line]) -> list[dict[str, Any]]:
     """Quick lines in report.json's form: they average out of the bias, so they are no effects."""
     return [
         {
@@ -51,7 +51,7 @@ def heading_in_words(m: Mapping[str, Any]) -> str:
     return f"against the attitude {before:.2f} -> {after:.2f} degrees a minute of heading"
 
 
-def turning(t: RateScale) -> dict:
+def turning(t: RateScale) -> dict[str, Any]:
     names = ("rate_x", "rate_y", "rate_z")
     heading = heading_of(t)
     more = f"; {heading_in_words(heading)}" if heading else ""
@@ -69,7 +69,7 @@ def turning(t: RateScale) -> dict:
     }
 
 
-def _timing(t: Timing) -> dict:
+def _timing(t: Timing) -> dict[str, Any]:
     late = "late" if t.delay_s > 0 else "early"
     return {
         "effect": "sample-timing",
@@ -83,7 +83,7 @@ def _timing(t: Timing) -> dict:
     }
 
 
-def _line(line: Line, few: bool) -> dict:
+def _line(line: Line, few: bool) -> dict[str, Any]:
     size = ", ".join(f"{1e3 * a:.2f}" for a in np.atleast_1d(line.amplitude_dps))
     return {
         "effect": "periodic-interference",

@@ -1,12 +1,19 @@
 """report.json, as design.md has it, with what a person needs beside it."""
 
+from collections.abc import Iterable, Sequence
+from typing import Any
+
 import numpy as np
 
 from ...model.effects import is_free, of_any_channel
+from ...model.model import Slot
 from ..fit.free_curve import draw
 from ..fit.intervals import block_bootstrap, rms
 from ..fit.single import STEPS_CHOSEN, WEAKER
+from ..read.sessions import Session
 from ..search.periodic import QUICK_HZ
+from ..search.selection import Found, Selection
+from ..search.steps import Step
 from ..verify.analysis import Analysis, slots
 from ..verify.courses import AFTER, BEFORE, ONLINE, ONLINE_BEFORE
 from ..verify.judge import residuals, rms_dps
@@ -21,7 +28,7 @@ _CI95 = 1.96
 NO_TEMPERATURE = "; no temperature was recorded, and the warm-up of every power-on looks like this"
 
 
-def report(analysis: Analysis) -> dict:
+def report(analysis: Analysis) -> dict[str, Any]:
     """Plain values, ready for JSON. Every figure in mdps is of the held-out part."""
     j = analysis.judgement
     effects = [*_effects(analysis), *motion_effects(analysis, _mdps(j.after_dps))]
@@ -61,16 +68,16 @@ def verdict(analysis: Analysis) -> str:
     return "unexplained-residual" if analysis.judgement.residual_test.left else "nothing-found"
 
 
-def _mdps(values) -> list[float]:
+def _mdps(values: Iterable[float | np.ndarray]) -> list[float]:
     return [round(float(1e3 * v), 4) for v in values]
 
 
-def _interval(parts):
+def _interval(parts: list[np.ndarray]) -> list[list[float]]:
     low, high = block_bootstrap(parts, rms)
     return [[a, b] for a, b in zip(_mdps(low), _mdps(high))]
 
 
-def _in_all(analysis):
+def _in_all(analysis: Analysis) -> dict[str, Any]:
     """Root mean squares over the three axes together."""
     j = analysis.judgement
     whole = _mdps([j.before_rms, j.after_rms, rms(analysis.floor_dps)])
@@ -83,7 +90,7 @@ def _in_all(analysis):
     }
 
 
-def _by_kernels(analysis):
+def _by_kernels(analysis: Analysis) -> dict[str, Any]:
     """What only the firmware's kernels can tell: learning online, turn-on offset, rounding."""
     m, floor = analysis.measured, analysis.floor_dps
     if m is None:
@@ -108,7 +115,7 @@ def _by_kernels(analysis):
     }
 
 
-def _truth(analysis):
+def _truth(analysis: Analysis) -> dict[str, str]:
     """What the rates are compared with, at rest and in motion."""
     earth, turning = analysis.sessions[0].earth, analysis.motion.rate_scale
     return {
@@ -117,8 +124,8 @@ def _truth(analysis):
     }
 
 
-def _split(analysis):
-    out = {
+def _split(analysis: Analysis) -> dict[str, Any]:
+    out: dict[str, Any] = {
         "unit": "time within one recording" if analysis.single else "power-on session",
         "train": [s.name for s in analysis.train],
         "test": [s.name for s in analysis.holdout],
@@ -136,7 +143,7 @@ def _split(analysis):
     return out
 
 
-def _effects(analysis):
+def _effects(analysis: Analysis) -> list[dict[str, Any]]:
     """Effects in the order found, each with the held-out part's error before and after it."""
     selection, out = analysis.selection, []
     fitted = slots(selection, analysis.coefficients)
@@ -172,7 +179,7 @@ def _effects(analysis):
     return out
 
 
-def _lost(selection, i: int) -> dict[str, float]:
+def _lost(selection: Selection, i: int) -> dict[str, float]:
     """Of a curve of any form, what the slot's one form for all axes loses of its squares."""
     [term, *more] = selection.found[i].candidate.terms
     if more or not is_free(term):
@@ -182,7 +189,7 @@ def _lost(selection, i: int) -> dict[str, float]:
     return {"lost_by_projection": round(lost, 4)}
 
 
-def _name(slot, own):
+def _name(slot: Slot, own: Sequence[Slot]) -> str:
     """A slot's source, with its power where an effect has several slots of one source; a bend with
     its place."""
     term = slot.term
@@ -192,12 +199,12 @@ def _name(slot, own):
     return term.source if alone else f"{term.source}^{term.power}"
 
 
-def _parameters(own):
+def _parameters(own: Sequence[Slot]) -> list[dict[str, Any]]:
     rows = [s.term.to_dict() for s in own]
     return [{k: v for k, v in row.items() if v not in (None, "none")} for row in rows]
 
 
-def _said(found):
+def _said(found: Found) -> str:
     kind, sources = found.candidate.kind, ", ".join(found.candidate.sources)
     if kind in ("time-drift", "power-on-transient"):
         return CAUSE_UNKNOWN
@@ -206,20 +213,20 @@ def _said(found):
     return f"{kind} of {sources}"
 
 
-def _uncorrected_axes(found):
+def _uncorrected_axes(found: Found) -> str:
     axes = [axis for axis, used in zip("xyz", found.axes) if not used]
     why = "where the error would grow"
     return f"; not corrected on {', '.join(axes)}, {why}" if axes else ""
 
 
-def _after(analysis, effects: int) -> list[np.ndarray]:
+def _after(analysis: Analysis, effects: int) -> list[np.ndarray]:
     """Residuals of the held-out part under the first so many effects alone."""
     if analysis.measured is not None:
         return analysis.measured.with_first(effects)
     return [r for r, _ in residuals(analysis.selection.first(effects), analysis.holdout)]
 
 
-def _events(analysis):
+def _events(analysis: Analysis) -> list[dict[str, Any]]:
     """Steps as they were looked for before the effects: of what an effect leaves, its own misfit is
     a step more often than a step is."""
     known = [(s, step) for s in analysis.sessions for step in (*s.steps, *s.listed)]
@@ -227,7 +234,7 @@ def _events(analysis):
     return [_event(s, step) for s, step in every]
 
 
-def _event(session, step):
+def _event(session: Session, step: Step) -> dict[str, Any]:
     half = _CI95 * step.deviation_dps
     return {
         "kind": "step",
@@ -240,7 +247,7 @@ def _event(session, step):
     }
 
 
-def _gate(analysis):
+def _gate(analysis: Analysis) -> dict[str, Any]:
     kept = {f.candidate.label for f in analysis.selection.found}
     return {
         "faults": analysis.gate.faults,
@@ -256,6 +263,6 @@ def _gate(analysis):
     }
 
 
-def as_json(value):
+def as_json(value: Any) -> Any:
     """NumPy scalars as plain numbers, for `json.dumps(default=...)`."""
     return np.asarray(value).tolist()

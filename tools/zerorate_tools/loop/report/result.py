@@ -28,7 +28,7 @@ class Split(_Split, total=False):
     block_s: float
     blocks: dict[str, int]
     how_much_weaker: str
-    pieces_of: str
+    pieces_of: list[str]
     pieces_before_mdps: list[float]
     pieces_after_mdps: list[float]
 

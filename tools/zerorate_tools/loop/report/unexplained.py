@@ -1,10 +1,14 @@
 """What is known of what remains, and what to record next."""
 
+from collections.abc import Iterable, Sequence
+
 import numpy as np
 
 from ...model import effects
 from ...numbers import fixed
+from ..read.sessions import Session
 from ..search.catalogue import is_supply, varies
+from ..verify.analysis import Analysis
 from ..verify.courses import BEFORE
 
 #: A sensor of the part's own that was not recorded, by a name of what it gives.
@@ -40,7 +44,7 @@ _WANDERS = "It varies slowly, as noise does, and follows no recorded channel."
 _UNSEEN_SHARE, _UNSEEN_DEGC = 0.25, 1.0
 
 
-def what_is_known(analysis, after_dps: np.ndarray) -> str:
+def what_is_known(analysis: Analysis, after_dps: np.ndarray) -> str:
     """A sentence or two on the residual of the held-out part, given its RMS (3,) in dps."""
     residual, floor = analysis.judgement.residual_test, analysis.floor_dps
     times = (after_dps / np.maximum(floor, 1e-12)).max()
@@ -59,7 +63,7 @@ def what_is_known(analysis, after_dps: np.ndarray) -> str:
     return "; ".join(parts) + "."
 
 
-def _nearest_channel(analysis):
+def _nearest_channel(analysis: Analysis) -> str:
     s = analysis.selection
     if not s.pool:
         return "no recorded channel could explain it"
@@ -70,7 +74,7 @@ def _nearest_channel(analysis):
     return f"the nearest recorded channel is {sources}, which does not explain it"
 
 
-def measure_next(analysis) -> list[str]:
+def measure_next(analysis: Analysis) -> list[str]:
     """What to record so that more could be told, the most useful first."""
     sessions, found = analysis.sessions, analysis.selection.found
     kinds = {f.candidate.kind for f in found}
@@ -92,7 +96,7 @@ def measure_next(analysis) -> list[str]:
     return out
 
 
-def _unrecorded(sources) -> str:
+def _unrecorded(sources: Iterable[str]) -> str:
     """What to log beside the device, less what is there."""
     there = " ".join(sources).lower()
     missing = [what for what, mark in _LOGGED.items() if mark not in there]
@@ -100,7 +104,7 @@ def _unrecorded(sources) -> str:
     return ", ".join([*logger, _LOOSEN])
 
 
-def _another_device(analysis):
+def _another_device(analysis: Analysis) -> list[str]:
     """The question whether what is held out is of the same device, where it begins far off."""
     if analysis.single:
         return []
@@ -110,7 +114,7 @@ def _another_device(analysis):
     return [_ONE_DEVICE.format(name, dps) for dps, name in far if dps > _ANOTHERS_DPS]
 
 
-def _other_temperatures(analysis):
+def _other_temperatures(analysis: Analysis) -> list[str]:
     """The range to record, where much of what is held out lies outside of what was fitted."""
     if analysis.single or "temp" not in analysis.sessions[0].sources:
         return []
@@ -124,11 +128,11 @@ def _other_temperatures(analysis):
     return out
 
 
-def _temperatures(session):
+def _temperatures(session: Session) -> np.ndarray:
     return session.block_mean(session.sources["temp"])[session.available]
 
 
-def _other_way(sessions) -> list[str]:
+def _other_way(sessions: Sequence[Session]) -> list[str]:
     """The course of temperature that none of the sessions has: down, or up."""
     if "temp" not in sessions[0].sources:
         return []
@@ -139,12 +143,12 @@ def _other_way(sessions) -> list[str]:
     return ([] if cools else [_COOLING]) + ([] if warms else [_WARMING])
 
 
-def _turned(sessions):
+def _turned(sessions: list[Session]) -> bool:
     names = ("acc_x", "acc_y", "acc_z")
     return all(n in sessions[0].sources for n in names) and any(varies(n, sessions) for n in names)
 
 
-def not_excluded(analysis) -> list[str]:
+def not_excluded(analysis: Analysis) -> list[str]:
     """Kinds of effect that these recordings cannot show because nothing in them varies it."""
     shown = {c.kind for c in analysis.selection.pool}
     if analysis.motion.rate_scale is not None:

@@ -1,7 +1,9 @@
 """What the bias of these sessions can follow: the rows of model/effects.py, each in its places."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import product
+from typing import Any
 
 import numpy as np
 
@@ -26,6 +28,10 @@ REFINED = {
     "centre": None,
     "second_centre": None,
 }
+
+
+#: Lowest, highest and mean value of a source.
+Span = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
@@ -60,7 +66,7 @@ class Candidate:
         return self.kind + channels
 
 
-def ranges(sessions: list[Session]) -> dict[str, tuple[float, float, float]]:
+def ranges(sessions: list[Session]) -> dict[str, Span]:
     """Source name -> lowest, highest and mean value in the blocks whose rate is known.
 
     The extremes are block means that several blocks share, so that no shock alone carries an
@@ -77,7 +83,7 @@ def ranges(sessions: list[Session]) -> dict[str, tuple[float, float, float]]:
     return out
 
 
-def _known(session, name, by_ticks):
+def _known(session: Session, name: str, by_ticks: bool) -> np.ndarray:
     """Values of a source in the blocks whose rate is known: of every tick, or the blocks' means."""
     if by_ticks:
         return session.source(name)[np.repeat(session.available, session.ticks_per_block)]
@@ -114,7 +120,9 @@ def beyond(lo: float, hi: float, name: str) -> tuple[float, float]:
     return lo - margin, hi + margin
 
 
-def _fields(choice: dict, span: dict, source: str, drawn: bool = False) -> dict:
+def _fields(
+    choice: Mapping[str, Any], span: Mapping[str, Span], source: str, drawn: bool = False
+) -> dict[str, Any]:
     """Fields of a term. drawn: whether it follows a curve, which ends where the range seen does."""
     lo, hi, mean = span.get(source, (0.0, 1.0, 0.0))
     fields = dict(choice)
@@ -139,13 +147,15 @@ def _fields(choice: dict, span: dict, source: str, drawn: bool = False) -> dict:
     return fields
 
 
-def _place(named, span: tuple[float, float, float]):
+def _place(named: str | float, span: Span) -> float:
     """A value, or the one of lowest, highest and mean that is named."""
     lo, hi, mean = span
-    return {"mean": mean, "lo": lo, "hi": hi}.get(named, named)
+    return {"mean": mean, "lo": lo, "hi": hi}[named] if isinstance(named, str) else named
 
 
-def _expand(row: Effect, source: str, family: str, span, others=()) -> list[Candidate]:
+def _expand(
+    row: Effect, source: str, family: str, span: Mapping[str, Span], others: Sequence[str] = ()
+) -> list[Candidate]:
     """The row's candidates of a source; others: sources that a product can have beside it."""
     grids = {n: (tuple(others) if v == "every" else v) for n, v in row.grids.items()}
     fixed = {**row.fields, **({"curve": row.curve} if row.curve else {})}
@@ -210,7 +220,9 @@ def _mean_degc(sessions: list[Session]) -> list[float]:
     return [float(np.mean([s.sources["temp"].mean() for s in sessions]))] if there else []
 
 
-def _group(row: Effect, span, varied, sessions) -> list[Candidate]:
+def _group(
+    row: Effect, span: Mapping[str, Span], varied: Sequence[str], sessions: list[Session]
+) -> list[Candidate]:
     """The row's candidate of several sources at once, where any of them varies."""
     if row.kind == "rate-scale" and _told_by_turns(sessions):
         return []
@@ -226,7 +238,7 @@ def _told_by_turns(sessions: list[Session]) -> bool:
     return any(s.delay is not None and s.moving_s > LONGEST_S for s in sessions)
 
 
-def _is_finite(candidate, sessions):
+def _is_finite(candidate: Candidate, sessions: Sequence[Session]) -> bool:
     columns = np.concatenate([block_basis(t, sessions[0]) for t in candidate.terms])
     return bool(np.isfinite(columns).all() and np.ptp(columns) > 0)
 

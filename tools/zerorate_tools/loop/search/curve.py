@@ -114,7 +114,7 @@ class ByPieces:
         alike = is_like_hysteresis(straight, beside, best, self.pool, sessions)
         return [] if alike or cancels(sessions, [*straight, *beside], best.terms) else [told]
 
-    def _kink(self, beside) -> list[Candidate]:
+    def _kink(self, beside: Terms) -> list[Candidate]:
         """The best by least squares, refined by the likelihood. Its slope is followed beyond the
         last temperature no further than it was seen."""
         sessions = self.regression.sessions
@@ -126,13 +126,13 @@ class ByPieces:
         seen = last - term.centre - (term.knot or 0.0)
         return [replace(best, terms=(replace(term, hi=min(term.hi, last + seen)),))]
 
-    def _best(self, some, straight, beside) -> Candidate | None:
+    def _best(self, some: Sequence[Candidate], straight: Terms, beside: Terms) -> Candidate | None:
         [session] = self.regression.sessions
         by_line = PiecesByLine(session)
         gains = [float(by_line(straight, beside, c.terms).sum()) for c in some]
         return some[int(np.argmax(gains))] if gains else None
 
-    def _judged(self, c: Candidate, beside, bends, tried: int) -> Found:
+    def _judged(self, c: Candidate, beside: Terms, bends: Terms, tried: int) -> Found:
         straight = less_slope(self.line, beside)
         ratio = float(self.regression.gains([*straight, *beside], [tuple(bends)]).sum())
         p = family_p(ratio, 3 * len(bends), tried)

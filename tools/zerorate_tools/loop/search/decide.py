@@ -11,8 +11,10 @@ from ...model.term import Terms
 from ..fit.free_curve import of_any_form
 from ..fit.left_out import gains
 from ..fit.noise import NATS
+from ..fit.regression import Regression
 from ..fit.single import PiecesByLine
 from ..fit.surrogates import null_ratios
+from .catalogue import Candidate
 
 #: Family-wise levels: the chance that anything of the family passes the first lock on a device
 #: with nothing in it.
@@ -61,7 +63,14 @@ def smallest_ratio(family: str, dof: int, tried: float) -> float:
     return float(chi2.isf(LEVEL[family] / tried, dof))
 
 
-def decide(regression, nuisances, candidate, ratio: float, tried: float, pool) -> Decision:
+def decide(
+    regression: Regression,
+    nuisances: Terms,
+    candidate: Candidate,
+    ratio: float,
+    tried: float,
+    pool: Terms,
+) -> Decision:
     """All locks on a candidate whose ratio beside the nuisances is known.
 
     pool: terms to make surrogates from. One session alone has no other to predict it.

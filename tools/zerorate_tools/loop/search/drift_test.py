@@ -11,8 +11,11 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.stats import chi2, f
 
+from ...model.term import Terms
 from ..fit.common_cause import RARE
+from ..fit.cross_products import CrossProducts
 from ..fit.left_out import gains
+from ..fit.regression import Regression
 from .catalogue import Candidate
 from .decide import Decision
 
@@ -30,7 +33,9 @@ def follows_time(candidate: Candidate) -> bool:
     return all(t.source in ("one", "time") and not t.second for t in candidate.terms)
 
 
-def considered(regression, terms, candidate: Candidate, ratio: float, tried: float) -> Decision:
+def considered(
+    regression: Regression, terms: Terms, candidate: Candidate, ratio: float, tried: float
+) -> Decision:
     """What both questions say of a candidate of one term beside the terms. ratio: its likelihood
     ratio; tried: candidates paid for.
     """
@@ -40,7 +45,7 @@ def considered(regression, terms, candidate: Candidate, ratio: float, tried: flo
     return Decision(not reason, p, ratio, 1.0, gain, reason, tried)
 
 
-def comes_again(whole, terms, candidate: Candidate, tried: float) -> bool:
+def comes_again(whole: Regression, terms: Terms, candidate: Candidate, tried: float) -> bool:
     """Whether it is there by all power-ons together, those held out among them (`whole`).
 
     Noise steeper than a random walk drifts alike at three power-ons by chance, and hardly at four:
@@ -49,7 +54,7 @@ def comes_again(whole, terms, candidate: Candidate, tried: float) -> bool:
     return chance(whole, terms, candidate.terms) * tried <= RARE**2
 
 
-def chance(regression, terms, candidate) -> float:
+def chance(regression: Regression, terms: Terms, candidate: Terms) -> float:
     """That noise alone answers both questions as well, for one candidate."""
     axes = regression.y[0].shape[1]
     of_size = chi2.sf(ratio_with_common_colour(regression, terms, candidate), axes)
@@ -64,7 +69,7 @@ def together(*chances: float) -> float:
     return float(chi2.sf(-2.0 * np.log(np.maximum(chances, 1e-300)).sum(), 2 * len(chances)))
 
 
-def ratio_with_common_colour(regression, terms, candidate) -> float:
+def ratio_with_common_colour(regression: Regression, terms: Terms, candidate: Terms) -> float:
     """Likelihood ratio of a candidate with noises that are alike on the three axes."""
     longest = max(regression.whiteners, key=lambda w: w.coefficients)
     low = lowness(longest.spectrum)
@@ -88,7 +93,7 @@ def common_colour(loglik: np.ndarray, low: np.ndarray) -> float:
     return float((loglik[:, None, :] - penalty).max(axis=2).sum(axis=0).max())
 
 
-def repeats(regression, terms, candidate) -> tuple[float, float]:
+def repeats(regression: Regression, terms: Terms, candidate: Terms) -> tuple[float, float]:
     """Squares of a term's mean coefficient and of the power-ons' deviations from it, each in its
     own variance by the fitted noise, summed over the axes: chi-squared of A and A (S - 1) degrees
     of freedom where there is nothing but that noise.
@@ -106,7 +111,9 @@ def repeats(regression, terms, candidate) -> tuple[float, float]:
     return float(mean), spread
 
 
-def _by_session(g, colour, a, weight):
+def _by_session(
+    g: CrossProducts, colour: int, a: int, weight: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """(S,) products of what the nuisances leave of a column with what they leave of the residual,
     and with itself."""
     xx, xy = g.xx[:, colour].squeeze((1, 2, 3)), g.xy[:, colour, ..., a].squeeze((1, 2))
@@ -128,7 +135,7 @@ def smallest_square(tried: float, axes: int, sessions: int) -> float:
 def _square(level: float, axes: int, sessions: int) -> float:
     free = axes * (sessions - 1) + _WORTH
 
-    def excess(square):
+    def excess(square: float) -> float:
         chances = chi2.sf(square, axes), f.sf(square / axes, axes, free)
         return np.log(together(*chances) / level)
 

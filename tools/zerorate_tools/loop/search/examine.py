@@ -1,7 +1,9 @@
 """One candidate, examined beside what was found: whatever speaks against taking it."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
+
+import numpy as np
 
 from ...model.term import Term, Terms
 from ..fit.common_cause import RARE
@@ -61,14 +63,16 @@ class Examiner:
             return chance * self.testing.tried(c) > RARE
         return float(self.regression.gains(rest, [c.terms]).sum()) < self.testing.least_ratio(c)
 
-    def _decision(self, best, told, straight, found, nuisances) -> Decision:
+    def _decision(
+        self, best: Candidate, told: Candidate, straight: Terms, found: Terms, nuisances: Terms
+    ) -> Decision:
         """By the likelihood, and by pieces left out. told: the candidate with its curve drawn."""
         decision = self._by_likelihood(best, nuisances)
         if decision.accepted and self.judged:
             return self._by_pieces(decision, self.judged, told, straight, found)
         return decision
 
-    def _by_likelihood(self, best, nuisances) -> Decision:
+    def _by_likelihood(self, best: Candidate, nuisances: Terms) -> Decision:
         r, tried = self.regression, self.testing.tried(best)
         with r.shrinking(_of_data_sheets(r, best.terms, nuisances)):
             ratio = float(r.gains(nuisances, [best.terms]).sum())
@@ -76,7 +80,14 @@ class Examiner:
             return drift_test.considered(r, nuisances, best, ratio, tried)
         return decide(r, nuisances, best, ratio, tried, self.singles)
 
-    def _by_pieces(self, decision, judged: PiecesByLine, best, straight, found) -> Decision:
+    def _by_pieces(
+        self,
+        decision: Decision,
+        judged: PiecesByLine,
+        best: Candidate,
+        straight: Terms,
+        found: Terms,
+    ) -> Decision:
         sessions, beside = self.regression.sessions, (straight, found)
         reason = ""
         if cancels(sessions, [*less_slope(straight, best.terms), *found], best.terms):
@@ -107,7 +118,9 @@ def cancels(sessions: Sequence[Session], beside: Terms, terms: Terms) -> bool:
     return _squares(sessions, terms, fitted, False) > _MOST_TIMES**2 * without
 
 
-def _squares(sessions, terms, coefficients, left: bool) -> float:
+def _squares(
+    sessions: Sequence[Session], terms: Terms, coefficients: Collection[np.ndarray], left: bool
+) -> float:
     """Of what terms add to the bias, or leave of it, offsets aside, in all."""
     total = 0.0
     for s in sessions:

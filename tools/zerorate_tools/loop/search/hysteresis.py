@@ -54,7 +54,13 @@ def may_show(sessions: Sequence[Session]) -> bool:
     return there and any(pass_of(s).any() for s in sessions)
 
 
-def is_like_hysteresis(straight, beside, best: Candidate, pool, sessions: list[Session]) -> bool:
+def is_like_hysteresis(
+    straight: Terms,
+    beside: Terms,
+    best: Candidate,
+    pool: Sequence[Candidate],
+    sessions: list[Session],
+) -> bool:
     """Whether a hysteresis of one width predicts the pieces left out of a session as well as a lag,
     a rate or a start: one course does not tell which it is, and at another power-on they part."""
     if best.kind not in MEMORIES:
@@ -125,7 +131,11 @@ def of_one_recording(
 
 
 def _with_a_bend(
-    regression, straight, bends, by_line, taken
+    regression: Regression,
+    straight: Terms,
+    bends: Sequence[tuple[Term, ...]],
+    by_line: PiecesByLine,
+    taken: int,
 ) -> tuple[float, tuple[Term, ...], Candidate] | None:
     """The nats that the best bend and hysteresis gain together, and both; None where none fits."""
     best: tuple[float, tuple[Term, ...], Candidate] | None = None
@@ -138,20 +148,22 @@ def _with_a_bend(
     return best
 
 
-def _chance(regression, beside, candidate: Candidate) -> tuple[float, float]:
+def _chance(regression: Regression, beside: Terms, candidate: Candidate) -> tuple[float, float]:
     """The chance that noise gains as much by any of the forms, and the likelihood ratio."""
     ratio = float(regression.gains(beside, [candidate.terms]).sum())
     return family_p(ratio, 3 * len(candidate.terms), _tried(candidate)), ratio
 
 
-def _factor(straight, bends, whole, by_line) -> float:
+def _factor(straight: Terms, bends: Sequence[Terms], whole: Terms, by_line: PiecesByLine) -> float:
     """By how much the error of pieces left out falls from that beside the best bend, geometric mean
     over the axes; the kernels, whose curve bends already, may have found none."""
     logs = [np.log(np.nanmean(by_line.residual(straight, t) ** 2, axis=0)) for t in (whole, *bends)]
     return float(np.exp(0.5 * (min(x.mean() for x in logs[1:]) - logs[0].mean())))
 
 
-def _rival(straight, bend, pool, by_line) -> tuple[Candidate, float]:
+def _rival(
+    straight: Terms, bend: Terms, pool: Sequence[Candidate], by_line: PiecesByLine
+) -> tuple[Candidate, float]:
     """The simpler effect that predicts best with the bend, and the nats."""
     simpler = [c for c in pool if c.kind in SIMPLER]
     gains = [float(by_line(straight, (), (*bend, *c.terms)).sum()) for c in simpler]
@@ -165,7 +177,7 @@ def _tried(candidate: Candidate) -> float:
     return 2.0 * MOST_OPERATORS * comb(_APART, widths)
 
 
-def _forms(sessions, beside) -> Iterator[tuple[Term, ...]]:
+def _forms(sessions: Sequence[Session], beside: Terms) -> Iterator[tuple[Term, ...]]:
     """Of every number of operators, with squares and without, the widths that fit best."""
     fits = _Fits(sessions, beside)
     for powers in ((1,), (1, 2)):
@@ -204,12 +216,12 @@ class _Fits:
         self._degc = [s.source("temp")[_some_of(s)] for s in sessions]
         self._grid = np.geomspace(_FINEST, _WIDEST, _GRID) * (self._hi - self._lo)
 
-    def _stacked(self, columns):
+    def _stacked(self, columns: Sequence[np.ndarray]) -> np.ndarray:
         """Rows of the blocks with a rate, less each session's mean."""
         there = [c[s.available] for c, s in zip(columns, self._sessions)]
         return np.vstack([c - c.mean(axis=0) for c in there])
 
-    def _beside(self, columns):
+    def _beside(self, columns: np.ndarray) -> np.ndarray:
         """What the other terms leave of columns."""
         return columns - self._q @ (self._q.T @ columns)
 
@@ -244,7 +256,7 @@ class _Fits:
                 return [float(r) for r in self._grid[best]]
             least, best = left.min(), choices[left.argmin()]
 
-    def _left(self, products, xy):
+    def _left(self, products: np.ndarray, xy: np.ndarray) -> np.ndarray:
         """(...,) sum over the axes of the logarithm of the squares left."""
         ridge = TINY * self.rows * np.eye(products.shape[-1])
         fitted = np.linalg.solve(products + ridge, xy)

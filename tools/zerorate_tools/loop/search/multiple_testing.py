@@ -2,15 +2,17 @@
 of each kind that would have reached it.
 """
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.stats import chi2, norm
 
-from ...model.term import Term
-from ..fit.likelihood import LEAST_OWN
+from ...model.term import Term, Terms
+from ..fit.cross_products import CrossProducts
+from ..fit.likelihood import LEAST_OWN, Base
 from ..fit.regression import Regression
-from ..read.sessions import block_basis
+from ..read.sessions import Session, block_basis
 from . import drift_test
 from .catalogue import Candidate
 from .decide import LIKELY, WEIGHT, effective, smallest_ratio
@@ -78,7 +80,12 @@ class MultipleTesting:
         return smallest_ratio(c.family, 3, self.tried(c))
 
 
-def smallest_dps(regression, nuisances, pool, needed) -> dict[str, float]:
+def smallest_dps(
+    regression: Regression,
+    nuisances: Terms,
+    pool: Sequence[Candidate],
+    needed: Callable[[Candidate], float],
+) -> dict[str, float]:
     """Kind -> RMS in dps over the blocks, equal on the three axes, that would be found nine times
     in ten.
 
@@ -102,7 +109,7 @@ def smallest_dps(regression, nuisances, pool, needed) -> dict[str, float]:
     return out
 
 
-def _information(g, base, scale):
+def _information(g: CrossProducts, base: Base, scale: np.ndarray) -> np.ndarray:
     """(K,) sum over axes of what a unit coefficient adds to the likelihood ratio, at the fitted
     noise.
     """
@@ -115,7 +122,7 @@ def _information(g, base, scale):
     return total
 
 
-def _own_rms(term, nuisances, sessions):
+def _own_rms(term: Term, nuisances: Terms, sessions: Sequence[Session]) -> float:
     """RMS over the blocks of what offsets and nuisances cannot take of a term."""
     stacks = [
         np.column_stack([block_basis(t, s)[s.available] for t in [term, *nuisances]])

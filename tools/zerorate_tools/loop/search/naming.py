@@ -1,6 +1,6 @@
 """The name of every effect found, and the posterior of what may stand in its place."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -53,7 +53,7 @@ def name_found(
         f.rivals = {name: n for name, n in beside.items() if name != called}
 
 
-def _named(regression, rest, candidate):
+def _named(regression: Regression, rest: Terms, candidate: Candidate) -> Candidate:
     fit = regression.fit([*rest, *candidate.terms])
     return named(candidate, fit.coefficients[len(rest) :])
 
@@ -83,7 +83,13 @@ def name_earth(
             f.rivals[ROTATION] = 0.0  # it turns with the pose alike
 
 
-def posterior(regression, terms, chosen, candidates, ratios) -> list[tuple[Candidate, float]]:
+def posterior(
+    regression: Regression,
+    terms: Terms,
+    chosen: Candidate,
+    candidates: Sequence[Candidate],
+    ratios: np.ndarray,
+) -> list[tuple[Candidate, float]]:
     """Every group that may stand in the chosen one's place, its best candidate refined, and the
     nats of its posterior; the likeliest first.
 

@@ -1,9 +1,12 @@
 """Lines of all sessions together: slow ones from ticks, quick ones from samples."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
-from ...model.term import evaluate
+from ...model.term import Terms, evaluate
 from ..read.lines import MOST, Line, Spectrum, find, spectrum
+from ..read.sessions import Session
 
 _SLOWEST_CYCLES = 10
 _MOST_BRIDGED = 0.1
@@ -15,7 +18,9 @@ QUICK_HZ = 0.5
 _FOLDED_HZ = 0.02  # how well a quick line's frequency is known
 
 
-def periodic(train, holdout, terms, coefficients: np.ndarray) -> list[Line]:
+def periodic(
+    train: Sequence[Session], holdout: Sequence[Session], terms: Terms, coefficients: np.ndarray
+) -> list[Line]:
     """Lines at rest beside what the terms, (terms, 3) dps per unit, explain."""
     quick = _welch(train, holdout)
     slow = _slow(train, holdout, terms, coefficients)
@@ -29,9 +34,12 @@ def _folds(quick: Line, slow: Line, step_s: float) -> bool:
     return abs(alias - slow.hz) < _FOLDED_HZ
 
 
-def _slow(train, holdout, terms, coefficients):
-    rates = [_left(s, terms, coefficients) for s in [*train, *holdout]]
-    if any(r is None for r in rates):
+def _slow(
+    train: Sequence[Session], holdout: Sequence[Session], terms: Terms, coefficients: np.ndarray
+) -> list[Line]:
+    every = [*train, *holdout]
+    rates = [r for s in every if (r := _left(s, terms, coefficients)) is not None]
+    if len(rates) < len(every):
         return []
     longest = max(len(r) for r in rates)
     length = 1 << int(np.ceil(np.log2(longest)))
@@ -52,7 +60,7 @@ def _of_models(line: Line, models: list[Spectrum]) -> bool:
     return bool(subtracted.sum() > _SUBTRACTED * (line.amplitude_dps**2).sum())
 
 
-def _model(session, terms, coefficients):
+def _model(session: Session, terms: Terms, coefficients: np.ndarray) -> np.ndarray:
     """(m, 3) dps that the terms explain of each tick."""
     out = np.zeros((session.blocks * session.ticks_per_block, 3))
     for term, c in zip(terms, coefficients):
@@ -60,7 +68,7 @@ def _model(session, terms, coefficients):
     return out
 
 
-def _left(session, terms, coefficients):
+def _left(session: Session, terms: Terms, coefficients: np.ndarray) -> np.ndarray | None:
     """(m, 3) rate of ticks at rest less what the terms explain, None where there is too little."""
     rate = session.ticks_dps
     if rate is None or len(rate) < _LEAST_TICKS:
@@ -70,8 +78,9 @@ def _left(session, terms, coefficients):
     return rate - _model(session, terms, coefficients)
 
 
-def _welch(train, holdout):
-    spectra = [s.welch for s in [*train, *holdout]]
-    if any(s is None for s in spectra) or len({s.step_hz for s in spectra}) > 1:
+def _welch(train: Sequence[Session], holdout: Sequence[Session]) -> list[Line]:
+    every = [*train, *holdout]
+    spectra = [s.welch for s in every if s.welch is not None]
+    if len(spectra) < len(every) or len({s.step_hz for s in spectra}) > 1:
         return []
     return find(spectra[: len(train)], spectra[len(train) :], _HANN_BINS, QUICK_HZ)

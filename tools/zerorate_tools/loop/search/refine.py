@@ -1,5 +1,6 @@
 """The parameters of a candidate between the points of its grid."""
 
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -7,12 +8,15 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from ...model.effects import DELAY_STEP_S, is_free
-from ...model.term import Terms
+from ...model.term import Term, Terms
 from ..fit.free_curve import draw
+from ..fit.regression import Regression
 from .catalogue import MARGIN, REFINED, Candidate
 
+_Scale = Callable[[float], float]
 
-def drawn(regression, beside: Terms, candidate: Candidate) -> Candidate:
+
+def drawn(regression: Regression, beside: Terms, candidate: Candidate) -> Candidate:
     """The candidate, with its curve told by the recordings where any curve will do."""
     first = candidate.terms[0]
     if not (candidate.is_free or len(candidate.terms) == 1 and is_free(first)):
@@ -20,22 +24,22 @@ def drawn(regression, beside: Terms, candidate: Candidate) -> Candidate:
     return replace(candidate, terms=(draw(regression, beside, first)[0],))
 
 
-def refined(regression, terms, candidate: Candidate) -> Candidate:
+def refined(regression: Regression, terms: Terms, candidate: Candidate) -> Candidate:
     """The candidate with its lag, width, knot or centre where the likelihood is highest."""
     for name in candidate.refine:
         candidate = _along(regression, terms, candidate, name)
     return candidate
 
 
-def _along(regression, terms, candidate, name):
+def _along(regression: Regression, terms: Terms, candidate: Candidate, name: str) -> Candidate:
     term = candidate.terms[0]
     at = getattr(term, name)
 
-    def moved(value):
+    def moved(value: float) -> tuple[Term, ...]:
         change: dict[str, Any] = {name: float(value)}
         return tuple(replace(t, **change) for t in candidate.terms)
 
-    def worse(value):
+    def worse(value: float) -> float:
         trial = moved(value)
         gain = regression.gains(terms, [trial]).sum()
         for t in trial:
@@ -55,7 +59,7 @@ def _along(regression, terms, candidate, name):
     return replace(candidate, terms=moved(best))
 
 
-def _intervals(term, name, at):
+def _intervals(term: Term, name: str, at: float) -> Iterator[tuple[float, float, _Scale, _Scale]]:
     """Where to look, and the scale on which to: a delay also between its neighbours on the grid,
     for a channel that leaps shows it there alone.
     """

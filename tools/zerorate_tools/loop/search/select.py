@@ -114,7 +114,7 @@ class Search:
             judged_again=self.judged_again,
         )
 
-    def _smallest(self):
+    def _smallest(self) -> dict[str, float]:
         r, needed, beside = self.regression, self.testing.needed, [*self.straight, *self.terms()]
         every = [*self.pool, *self.forms]
         bent = [c for c in every if c.kind != "temperature-quadratic"]
@@ -123,7 +123,7 @@ class Search:
             smallest = smallest_dps(r, beside, quadratic, needed)
             return {**smallest, **smallest_dps(r, self._beside_bend(), bent, needed)}
 
-    def _begin_with_one(self, judged: PiecesByLine):
+    def _begin_with_one(self, judged: PiecesByLine) -> None:
         """The hysteresis that one course of temperature shows, else a curve as a candidate."""
         r, every = self.regression, self.pool
         if not self.judged_again:
@@ -145,7 +145,7 @@ class Search:
             self.pool += curve.smooth_curve(r.sessions, self.line, self.taken)
         self.refused += [(hysteresis.KIND, refused)] if refused else []
 
-    def _by_pieces(self, judged: PiecesByLine):
+    def _by_pieces(self, judged: PiecesByLine) -> None:
         """What pieces left out tell of temperature, in the place of a curve that was found."""
         enough = curve.shows_a_curve(self.regression.sessions[0])
         if enough and not has_play_operators(self.terms()):
@@ -153,7 +153,7 @@ class Search:
             own = [*self.pool, *self.forms], judged, self.taken
             self.found = curve.ByPieces(self.regression, self.line, *own).look(others)
 
-    def _widen_hysteresis(self):
+    def _widen_hysteresis(self) -> None:
         """A sum of play operators in place of what was found to remember temperature, or to follow
         the start of a power-on, where it is likelier."""
         own = [f for f in self.found if f.candidate.kind in hysteresis.LIKE_IT]
@@ -173,7 +173,7 @@ class Search:
             for f in own:
                 f.rivals[hysteresis.KIND] = -lost
 
-    def _look_afresh(self):
+    def _look_afresh(self) -> None:
         r = self.regression
         r.turn(np.eye(3))
         nuisances = self._beside_bend()
@@ -186,7 +186,7 @@ class Search:
         bend = () if candidate.kind in _BENDS else self.bend
         return [*self.straight, *bend, *self.terms()]
 
-    def _ratios(self):
+    def _ratios(self) -> tuple[np.ndarray, np.ndarray]:
         """Ratios beside the straight line (for choosing) and beside the bend too (for testing)."""
         r, groups = self.regression, [c.terms for c in self.pool]
         choose = r.gains([*self.straight, *self.terms()], groups).sum(axis=1)
@@ -248,7 +248,7 @@ class Search:
         bend = () if c.kind in _BENDS else less_slope(self.own_bend, others)
         return self.examiner.accepts(c, straight, others, [*straight, *bend, *others])
 
-    def _drop_idle(self):
+    def _drop_idle(self) -> None:
         """An effect that the later ones explain is taken out again; the others' parameters are
         refined together.
         """

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -10,9 +10,10 @@ from scipy.special import softmax
 
 from ...model.model import MOST_CHANNELS, MOST_PLAYS, MOST_RINGS, MOST_SLOTS, MOST_TABLES
 from ...model.term import Term, Terms
-from ..fit.line import less_slope
+from ..fit.line import by_axis, less_slope, ordinary, shrunk, with_line
 from ..fit.noise import NATS
 from ..fit.regression import Regression
+from ..fit.shrunk import has_play_operators
 from ..read.sessions import OWN_SOURCES
 from .catalogue import Candidate
 from .decide import Decision
@@ -117,3 +118,28 @@ def fits_in_slots(terms: Terms, taken: int = 0) -> bool:
         and sum(t.table is not None for t in terms) <= MOST_TABLES
         and len(channels) <= MOST_CHANNELS
     )
+
+
+def deployed(selection: Selection, effects: bool = True) -> tuple[list[Term], np.ndarray]:
+    """Terms and (terms, 3) coefficients as deployed: the line first, then the effects if wanted.
+
+    Those of a single recording are learned like the line: there the noise's walk is the bend.
+    """
+    straight, terms = list(selection.straight), list(selection.terms) if effects else []
+    sessions, every = selection.regression.sessions, [*straight, *terms]
+    if not every:
+        return [], np.zeros((0, 3))
+    applied = with_line(straight, terms, selection.applied if effects else np.ones((0, 3)))
+    fitted = by_axis(_fit_of(selection), every, applied)[len(straight) :]
+    if not straight:
+        return terms, fitted
+    return every, np.vstack([ordinary(straight, sessions, terms, fitted), fitted])
+
+
+def _fit_of(selection: Selection) -> Callable[[Terms], np.ndarray]:
+    regression = selection.regression
+    if has_play_operators(selection.terms) and not selection.stands_alone:
+        return lambda terms: shrunk(regression, terms)
+    if selection.alone:
+        return lambda terms: ordinary(terms, regression.sessions)
+    return lambda terms: regression.fit(terms).coefficients

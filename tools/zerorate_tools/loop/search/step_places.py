@@ -9,7 +9,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ...model.term import Terms
 from ..fit.likelihood import fit_base, ratios
+from ..fit.regression import Regression
+from ..read.sessions import Session
 
 #: Blocks at the end where a step cannot be told from the offset.
 EDGE = 5
@@ -21,6 +24,9 @@ _QUARTERS = np.arange(-3, 4) / 4
 _RAMPS, _OFF = np.array([2.0, 4.0, 8.0]), np.array([-0.5, 0.0, 0.5])
 LONGEST = float(_RAMPS.max())
 
+#: (session, places, ratios) of some sessions.
+Ratios = list[tuple[int, np.ndarray, np.ndarray]]
+
 
 @dataclass
 class Place:
@@ -31,7 +37,7 @@ class Place:
     ratio: float
 
 
-def heavisides(session, at: np.ndarray) -> np.ndarray:
+def heavisides(session: Session, at: np.ndarray) -> np.ndarray:
     """(blocks, places) 0 before and 1 after each, and of a block with one in it the share after."""
     out = np.clip(np.arange(session.blocks)[:, None] + 1.0 - at[None], 0.0, 1.0)
     for k in np.flatnonzero(at % 1.0):
@@ -40,7 +46,7 @@ def heavisides(session, at: np.ndarray) -> np.ndarray:
     return out
 
 
-def _share_after(session, at: float) -> float:
+def _share_after(session: Session, at: float) -> float:
     """Of the ticks that count in a block's rate, those after a place in it: a hand that put the
     device aside left rest at one of its ends."""
     per, block = session.ticks_per_block, int(at)
@@ -51,7 +57,7 @@ def _share_after(session, at: float) -> float:
     return float(after @ weight / weight.sum()) if weight.any() else block + 1.0 - at
 
 
-def _around(session, at: float) -> np.ndarray:
+def _around(session: Session, at: float) -> np.ndarray:
     """Places by quarters of a block around one, and where the device did not rest there around the
     first and the last block of that: the step may be in either."""
     there = np.flatnonzero(session.available)
@@ -63,7 +69,7 @@ def _around(session, at: float) -> np.ndarray:
 class _Beside:
     """Likelihood ratios of columns beside the terms and the events that the regression has."""
 
-    def __init__(self, regression, terms) -> None:
+    def __init__(self, regression: Regression, terms: Terms) -> None:
         self._regression, self._z = regression, regression.stack(terms)
         self._products = regression.cross_products(terms)
         self._base = fit_base(self._products, regression.scale)
@@ -81,7 +87,7 @@ class _Beside:
         return ratios(replace(self._products, **of_all), self._base, r.scale).sum(axis=1)
 
 
-def beyond_ramps(regression, terms, session: int, at: float) -> float:
+def beyond_ramps(regression: Regression, terms: Terms, session: int, at: float) -> float:
     """By how much a step explains more than the best ramp of some blocks around it, as twice a
     gain in log likelihood."""
     own = regression.sessions[session]
@@ -93,7 +99,7 @@ def beyond_ramps(regression, terms, session: int, at: float) -> float:
     return float(found[: steps.shape[1]].max() - found[steps.shape[1] :].max())
 
 
-def best_place(regression, terms) -> tuple[Place | None, list]:
+def best_place(regression: Regression, terms: Terms) -> tuple[Place | None, Ratios]:
     """Where a step explains most beside the terms and the events that the regression has, and
     (session, places, ratios) of every session."""
     beside = _Beside(regression, terms)
@@ -117,12 +123,12 @@ def best_place(regression, terms) -> tuple[Place | None, list]:
     return best, every
 
 
-def tried(session) -> int:
+def tried(session: Session) -> int:
     """How many places a session has, in motion or not."""
     return max(0, session.blocks + 1 - EDGE - _WAKES)
 
 
-def _ground(session) -> np.ndarray:
+def _ground(session: Session) -> np.ndarray:
     """Blocks before which a step may be: in motion a scale factor's error leaps, not the bias."""
     moved = session.moved
     free = ~(moved | np.r_[False, moved[:-1]])

@@ -5,20 +5,22 @@ session are looked at together at the colour that fits best, one step after the 
 stand beside all others.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.stats import chi2
 
-from ...model.term import Term
-from ..fit.regression import predicted
+from ...model.term import Term, Terms
+from ..fit.regression import Events, Regression, predicted
 from ..fit.shrunk import shrink
 from ..fit.surrogates import NullRatios
+from ..read.sessions import Session
 from .catalogue import Candidate, candidates, lags, late
 from .decide import LEVEL
 from .drift_test import follows_time
 from .refine import refined
-from .step_places import EDGE, LONGEST, best_place, beyond_ramps, heavisides, tried
+from .step_places import EDGE, LONGEST, Ratios, best_place, beyond_ramps, heavisides, tried
 
 MOST_PER_SESSION = 4
 _AWAY = 15  # blocks from a step at which a step beside it no longer shows it
@@ -64,7 +66,9 @@ class Step:
         return dps @ along / (self.size_dps @ along)
 
 
-def steps_and_lags(regression, terms, recordings: int = 1) -> tuple[list[Step], dict[Term, float]]:
+def steps_and_lags(
+    regression: Regression, terms: Terms, recordings: int = 1
+) -> tuple[list[Step], dict[Term, float]]:
     """Every step beside the terms, strongest first, which stay in the regression as nuisances; and
     the shrinkage of the lags of temperature beside which they stand (`Regression.shrinking`).
 
@@ -95,10 +99,9 @@ def steps_and_lags(regression, terms, recordings: int = 1) -> tuple[list[Step], 
             stand = _all(regression, [*beside, *lagging], recordings)
         steps = [s for s in steps if any(_is_same(s, other) for other in stand)]
     _set(regression, steps, None)
-    steps = _sized(regression, beside, steps)
-    fitted, first = regression.fit(beside).coefficients, len(terms)
-    forms, fitted = beside[first:], fitted[first:]
-    return [s for s in steps if not _is_timing(regression, forms, fitted, s)], lagging
+    steps = _sized(regression, beside, steps, [])
+    fitted, own = regression.fit(beside).coefficients[len(terms) :], beside[len(terms) :]
+    return [s for s in steps if not _is_timing(regression, own, fitted, s)], lagging
 
 
 def _is_same(a: Step, b: Step) -> bool:
@@ -106,7 +109,7 @@ def _is_same(a: Step, b: Step) -> bool:
     return a.session == b.session and abs(a.block - b.block) <= NEAR
 
 
-def _shrunk_lags(regression, terms) -> dict[Term, float]:
+def _shrunk_lags(regression: Regression, terms: Terms) -> dict[Term, float]:
     """All lags of temperature together, shrunk as they are likeliest beside the terms alone,
     because a form or a step takes the place of several."""
     regression.set_events([])
@@ -119,7 +122,7 @@ def _shrunk_lags(regression, terms) -> dict[Term, float]:
     return dict(zip(late, (said.precision[0, own] * squares).tolist()))
 
 
-def _is_timing(regression, forms, fitted, step: Step) -> bool:
+def _is_timing(regression: Regression, forms: Terms, fitted: np.ndarray, step: Step) -> bool:
     """Whether the forms taken beside a step change by more than its size from the block before it
     to that after it: a reading that is late by seconds makes such a step."""
     session = regression.sessions[step.session]
@@ -128,7 +131,9 @@ def _is_timing(regression, forms, fitted, step: Step) -> bool:
     return bool(abs(times[following] - times[step.block - 1]) > 1.0)
 
 
-def _best_form(regression, terms, forms) -> tuple[Candidate | None, float]:
+def _best_form(
+    regression: Regression, terms: Terms, forms: Sequence[Candidate]
+) -> tuple[Candidate | None, float]:
     """The form that explains most beside the terms, and its likelihood ratio; one of several terms
     pays for the coefficients that a step does not have, a curve for its form (Akaike)."""
     if not forms:
@@ -138,7 +143,7 @@ def _best_form(regression, terms, forms) -> tuple[Candidate | None, float]:
     return forms[int(gains.argmax())], float(gains.max())
 
 
-def column(regression, step: Step) -> list[np.ndarray]:
+def column(regression: Regression, step: Step) -> list[np.ndarray]:
     """(n,) 0 before and 1 after it in its session, 0 in the others."""
     out = [np.zeros(s.blocks) for s in regression.sessions]
     at = np.array([step.block - step.share])
@@ -146,7 +151,7 @@ def column(regression, step: Step) -> list[np.ndarray]:
     return out
 
 
-def _all(regression, terms, recordings: int = 1) -> list[Step]:
+def _all(regression: Regression, terms: Terms, recordings: int = 1) -> list[Step]:
     """Abrupt steps that stand beside each other; the regression is left as it was."""
     kept = regression.events()
     steps = standing(regression, terms, recordings, kept)
@@ -156,7 +161,7 @@ def _all(regression, terms, recordings: int = 1) -> list[Step]:
     return abrupt
 
 
-def standing(regression, terms, recordings: int, kept) -> list[Step]:
+def standing(regression: Regression, terms: Terms, recordings: int, kept: Events) -> list[Step]:
     """Steps that stand beside each other, abrupt or not; the regression is left with them."""
     most = MOST_PER_SESSION * len(regression.sessions)
     steps: list[Step] = []
@@ -175,11 +180,13 @@ def standing(regression, terms, recordings: int, kept) -> list[Step]:
     return _sized(regression, terms, steps, kept)
 
 
-def _set(regression, steps, kept):
+def _set(regression: Regression, steps: list[Step], kept: Events | None) -> None:
     regression.set_events([column(regression, s) for s in steps], kept)
 
 
-def _gain(regression, terms, others, step, kept) -> float:
+def _gain(
+    regression: Regression, terms: Terms, others: list[Step], step: Step, kept: Events
+) -> float:
     """The likelihood ratio of a step beside others, the noise's colour refitted with it: without
     it, noise that walks takes most of it for its own."""
     _set(regression, [*others, step], kept)
@@ -188,7 +195,9 @@ def _gain(regression, terms, others, step, kept) -> float:
     return float(2.0 * (total - regression.fit(terms).total))
 
 
-def _stand(regression, terms, steps, kept, recordings: int) -> bool:
+def _stand(
+    regression: Regression, terms: Terms, steps: list[Step], kept: Events, recordings: int
+) -> bool:
     """Whether each is beyond what the places away from all of them show; ratios are renewed."""
     away = _away(regression, steps, _best(regression, terms)[1])
     for step in steps:
@@ -205,11 +214,11 @@ def _level(steps: int) -> float:
     return _BESIDE_OTHERS if steps else LEVEL["step"]
 
 
-def _tried(regression) -> int:
+def _tried(regression: Regression) -> int:
     return sum(map(tried, regression.sessions))
 
 
-def _best(regression, terms) -> tuple[Step | None, list]:
+def _best(regression: Regression, terms: Terms) -> tuple[Step | None, Ratios]:
     """The step that explains most, and (session, places, ratios) of every session."""
     place, every = best_place(regression, terms)
     if place is None:
@@ -218,7 +227,7 @@ def _best(regression, terms) -> tuple[Step | None, list]:
     return Step(place.session, block, np.zeros(3), place.ratio, 1.0, share=block - place.at), every
 
 
-def _away(regression, steps, every) -> np.ndarray:
+def _away(regression: Regression, steps: list[Step], every: Ratios) -> np.ndarray:
     """Ratios at the places away from every step."""
     out = []
     for s, at, ratios in every:
@@ -241,10 +250,10 @@ def _survival(ratio: float, away: np.ndarray, axes: int = 3) -> float:
     return max(float(by_theory), by_places)
 
 
-def _sized(regression, terms, steps, kept=()) -> list[Step]:
+def _sized(regression: Regression, terms: Terms, steps: list[Step], kept: Events) -> list[Step]:
     """The steps with their sizes, fitted together, and standard deviations."""
     before = regression.events()
-    regression.set_events([column(regression, s) for s in steps], list(kept))
+    regression.set_events([column(regression, s) for s in steps], kept)
     base, own = regression.fit(terms).base, slice(-len(steps), None)
     values = base.fitted[:, own]
     spread = [np.diag(i)[own] * v for i, v in zip(base.unscaled, base.variance)]
@@ -258,7 +267,9 @@ def _sized(regression, terms, steps, kept=()) -> list[Step]:
     return steps
 
 
-def _is_no_ramp(regression, terms, steps, step, kept) -> bool:
+def _is_no_ramp(
+    regression: Regression, terms: Terms, steps: list[Step], step: Step, kept: Events
+) -> bool:
     """Whether no ramp explains clearly more than the step, where those near it are taken out: a
     slow loop looks like a ramp or like a few small steps."""
     far = [s for s in steps if s.session != step.session or abs(s.block - step.block) > LONGEST]
@@ -267,7 +278,7 @@ def _is_no_ramp(regression, terms, steps, step, kept) -> bool:
     return beyond > _LEAST_BEYOND
 
 
-def _is_unseen(session, block: int) -> bool:
+def _is_unseen(session: Session, block: int) -> bool:
     """Whether the device did not rest around the place for so long, and at such temperatures, that
     the bias may have drifted there: along a slow loop, for one."""
     there = np.flatnonzero(session.available)

@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.stats import chi2
 
-from ...model.term import Term
+from ...model.term import Term, Terms
 from ..fit.common_cause import RARE
 from ..fit.regression import Regression
 from ..read.sessions import Session
@@ -26,7 +26,7 @@ def remove_steps(sessions: Sequence[Session]) -> list[Session]:
     return [_less(s, _steps(s, len(sessions))) for s in sessions]
 
 
-def _steps(session, recordings: int) -> list[Step]:
+def _steps(session: Session, recordings: int) -> list[Step]:
     """Those of one session of so many in their order; one in the middle of a block, which two
     blocks in turn show, is one."""
     out: list[Step] = []
@@ -45,7 +45,9 @@ def _steps(session, recordings: int) -> list[Step]:
     return out
 
 
-def _is_thermometers(regression, beside, late: Mapping[Term, float], step: Step) -> bool:
+def _is_thermometers(
+    regression: Regression, beside: Terms, late: Mapping[Term, float], step: Step
+) -> bool:
     """Whether a jump of the temperature by one reading at most explains the step: nobody knows when
     the temperature moved between two readings. late: the shrunk lags, beside the terms."""
     [session] = regression.sessions
@@ -126,7 +128,7 @@ def _parting(along: np.ndarray, block: int, per: int) -> int:
     return int(places[(left**2).sum(axis=0).argmin()])
 
 
-def _by_accelerometer(session, first, last) -> tuple[int | None, str]:
+def _by_accelerometer(session: Session, first: int, last: int) -> tuple[int | None, str]:
     """(tick, words) of the largest jump or click of the accelerometer between two ticks."""
     if "acc_x" not in session.sources:
         return None, ""
@@ -142,7 +144,7 @@ def _by_accelerometer(session, first, last) -> tuple[int | None, str]:
     return at, said
 
 
-def hold_disturbed(regression, terms, recordings: int = 1) -> None:
+def hold_disturbed(regression: Regression, terms: Terms, recordings: int = 1) -> None:
     """Hold every disturbance's blocks on a line between their neighbours."""
     kept = regression.events()
     for _ in range(MOST_PER_SESSION):
@@ -162,7 +164,7 @@ def _undoes(a: Step, b: Step) -> bool:
     return bool(a.session == b.session and apart <= NEAR and undone)
 
 
-def _hold(regression, a: Step, b: Step) -> None:
+def _hold(regression: Regression, a: Step, b: Step) -> None:
     """The blocks from one step to another."""
     rate = regression.rate[a.session].copy()
     at = np.arange(a.block - int(np.ceil(a.share)), b.block)

@@ -10,14 +10,13 @@ import numpy as np
 from ...model import CannotDeploy, Model, Slot, build_model
 from ...model.model import binding_of
 from ...recordings import Scales
-from ..fit.line import deployed
-from ..fit.noise import floor_dps
+from ..fit.regression import floor_dps
 from ..motion.scales_and_timing import InMotion, slots_of
 from ..read.earth import ROTATION
 from ..read.gate import GateReport
 from ..read.lines import Line
 from ..read.sessions import Session, common_sources
-from ..search.selection import Selection
+from ..search.selection import Selection, deployed
 from .courses import Courses
 from .judge import Judgement, judge
 
@@ -84,7 +83,7 @@ def slots(selection: Selection, coefficients: np.ndarray) -> list[Slot]:
     ]
 
 
-def model_of(analysis, scales, effects: int | None = None) -> Model:
+def model_of(analysis: Analysis, scales: Scales, effects: int | None = None) -> Model:
     """The model of an analysis, every number as the integers hold it. Raises CannotDeploy.
 
     effects: the first so many effects alone, fitted by themselves; None: all, with those of motion.

@@ -4,7 +4,7 @@ The firmware's learned curve bends already. What an effect is worth is therefore
 on a straight line, but what it gains on a firmware that has learned the other pieces without it.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import partial
 
 import numpy as np
@@ -55,14 +55,27 @@ class PiecesByKernels(PiecesByLine):
             self._known[key] = self._left(devices, whole)
         return self._known[key]
 
-    def models(self, straight, terms, applied=None, more=()) -> list[Model | None]:
+    def models(
+        self,
+        straight: Terms,
+        terms: Terms,
+        applied: np.ndarray | None = None,
+        more: Sequence[Slot] = (),
+    ) -> list[Model | None]:
         """One a turn, with the terms fitted to what is not left out in it, and with more slots.
 
         Raises CannotDeploy.
         """
         return [self._model(straight, terms, applied, [*more], part) for part in self.parts]
 
-    def _model(self, straight, terms, applied, more, part):
+    def _model(
+        self,
+        straight: Terms,
+        terms: Terms,
+        applied: np.ndarray | None,
+        more: Sequence[Slot],
+        part: Session,
+    ) -> Model | None:
         kept, fitted = self.fitted_to(part, straight, terms, applied)
         pairs = list(zip(kept, fitted))[len(straight) :]
         slots = [Slot(t, (float(x), float(y), float(z)), "") for t, (x, y, z) in pairs]
@@ -87,7 +100,9 @@ class PiecesByKernels(PiecesByLine):
             d.set_offset((0, 0, 0))
         return devices
 
-    def bias_q8(self, devices: Sequence[Firmware], frames: Frames, learn=False) -> np.ndarray:
+    def bias_q8(
+        self, devices: Sequence[Firmware], frames: Frames, learn: bool = False
+    ) -> np.ndarray:
         """(n, 3) of every sample by the device that its block was left out of, LSB in Q8.
 
         One device may stand for all.
@@ -96,7 +111,7 @@ class PiecesByKernels(PiecesByLine):
         each = at_once([partial(d.run, frames, learn) for d in devices])
         return np.array(each)[turn % len(each), np.arange(len(frames))]
 
-    def _left(self, devices, whole: bool) -> np.ndarray:
+    def _left(self, devices: Sequence[Firmware], whole: bool) -> np.ndarray:
         """(n, 3) residuals. whole: the terms remember what was before the piece."""
         p, means = self.power_on, BlockMeans(self.power_on)
         for frames in p.frames():
@@ -111,7 +126,7 @@ class PiecesByKernels(PiecesByLine):
         left = np.where(p.scored[:, None], p.rate_dps - means.blocks_dps(), np.nan)
         return self.about_stretches(left)
 
-    def _stretches(self, first, last):
+    def _stretches(self, first: int, last: int) -> Iterator[tuple[int, int]]:
         """(first, one past last) of the blocks from one change of turn to the next."""
         edges = np.flatnonzero(np.diff(self.fold)) + 1
         inside = edges[(edges > first) & (edges < last)]

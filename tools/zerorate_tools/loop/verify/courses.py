@@ -20,13 +20,15 @@ from ...replay.samples import Frames
 from ..search.selection import Selection
 from .by_kernels import PiecesByKernels
 from .firmware import Firmware, at_once
-from .power_on import BlockMeans, PowerOn, turn_on
+from .power_on import BlockMeans, PowerOn, TurnOn, turn_on
 
 BY = "the firmware's own kernels, with the model in its integer form; means of blocks"
 BEFORE, AFTER, ONLINE_BEFORE, ONLINE = "before", "after", "online_before", "online"
 
 #: Called with the session's name, the samples, and what each way subtracts (n, 3), LSB in Q8.
 Sink = Callable[[str, Frames, dict[str, np.ndarray]], None]
+#: What is subtracted from samples, (n, 3) LSB in Q8.
+Way = Callable[[Frames], np.ndarray]
 
 
 @dataclass
@@ -123,15 +125,18 @@ class SessionRuns:
         if online or held_out:
             ways.update(self._online(name))
 
-        def biases(frames):
+        def biases(frames: Frames) -> dict[str, np.ndarray]:
             return dict(zip(ways, at_once(list(ways.values()), frames)))
 
         return scored(p, _means(p, ways, biases, sink), offsets, unscored)
 
-    def _frozen(self, p, held_out):
+    def _frozen(
+        self, p: PowerOn, held_out: bool
+    ) -> tuple[dict[str, Way], int, dict[str, np.ndarray]]:
         """Ways to run frames through a frozen copy of each device, its turn-on offset in place."""
         last = len(self.devices) - 1
-        runs, taken = {}, {}
+        runs: dict[str, Way] = {}
+        taken: dict[str, TurnOn] = {}
         for k, device in enumerate(self.devices):
             way = AFTER if k == last and k else after_first(k)
             if way not in (BEFORE, AFTER) and not held_out:
@@ -140,11 +145,11 @@ class SessionRuns:
             ready.power_on()
             taken[way] = turn_on(device, p)
             ready.set_offset(taken[way].offset_q8)
-            runs[way] = lambda frames, ready=ready: ready.run(frames, learn=False)
+            runs[way] = partial(ready.run, learn=False)
         offsets = {way: of.offset_q8 / (256.0 * p.lsb) for way, of in taken.items()}
         return runs, max(of.blocks for of in taken.values()), offsets
 
-    def _online(self, name):
+    def _online(self, name: str) -> dict[str, Way]:
         if name in self.begun:
             devices = self.begun[name]
         else:
@@ -169,23 +174,25 @@ class PieceRuns:
         if selection.found or more:
             self.models[AFTER] = self._models(selection, more)
 
-    def _models(self, selection, more=()):
+    def _models(self, selection: Selection, more: Sequence[Slot] = ()) -> list[Model | None]:
         return self.pieces.models(selection.straight, selection.terms, selection.applied, more)
 
-    def course(self, sink: Sink, learning: dict | None = None) -> Course:
+    def course(self, sink: Sink, learning: Mapping[str, Way] | None = None) -> Course:
         """Run the devices over the recording: frozen ones, and those that learn as they go, by
         default from nothing.
         """
         of, p = self.pieces, self.pieces.power_on
         frozen = {way: of.learned(models) for way, models in self.models.items()}
-        ways = {way: partial(of.bias_q8, devices) for way, devices in frozen.items()}
+        ways: dict[str, Way] = {
+            way: partial(of.bias_q8, devices) for way, devices in frozen.items()
+        }
         if learning is None:
             *_, last = self.models.values()
             new = {ONLINE_BEFORE: of.new(self.models[BEFORE][:1]), ONLINE: of.new(last)}
             learning = {way: partial(of.bias_q8, d, learn=True) for way, d in new.items()}
         ways |= learning
 
-        def biases(frames):
+        def biases(frames: Frames) -> dict[str, np.ndarray]:
             return {way: run(frames) for way, run in ways.items()}
 
         course = scored(p, _means(p, ways, biases, sink))
@@ -194,7 +201,9 @@ class PieceRuns:
         return course
 
 
-def _means(p: PowerOn, ways: Iterable[str], biases: Callable[[Frames], dict], sink: Sink) -> dict:
+def _means(
+    p: PowerOn, ways: Iterable[str], biases: Callable[[Frames], dict[str, np.ndarray]], sink: Sink
+) -> dict[str, np.ndarray]:
     """(n, 3) dps of each way by block. biases: what each subtracts from some samples, LSB in Q8."""
     means = {way: BlockMeans(p) for way in (*ways, AFTER)}
     for frames in p.frames():
@@ -207,7 +216,10 @@ def _means(p: PowerOn, ways: Iterable[str], biases: Callable[[Frames], dict], si
 
 
 def scored(
-    p: PowerOn, bias: dict[str, np.ndarray], offsets: dict | None = None, unscored: int = 0
+    p: PowerOn,
+    bias: dict[str, np.ndarray],
+    offsets: dict[str, np.ndarray] | None = None,
+    unscored: int = 0,
 ) -> Course:
     """A course from (n, 3) dps by way; the first unscored blocks told the turn-on offset."""
     rate = np.where(p.scored[:, None], p.rate_dps, np.nan)

@@ -45,7 +45,7 @@ class Firmware:
         self._frozen = deepcopy(self._learning)
         self._frozen[SETTINGS.STILL_ACCEL_Q8] = -1
 
-    def _load(self, model, channels):
+    def _load(self, model: Model, channels: Sequence[str]) -> None:
         effects = EffectModel()
         reason = effects.load(encoded(model), self._corrector.sensor)
         if reason != LOADED:
@@ -74,11 +74,11 @@ class Firmware:
         parts = zip(np.r_[0, edges], np.r_[edges, len(frames)])
         return np.vstack([self._run(rows(frames, a, b), bool(learn[a])) for a, b in parts])
 
-    def _run(self, frames, learn):
+    def _run(self, frames: Frames, learn: bool) -> np.ndarray:
         self._corrector.settings = self._learning if learn else self._frozen
         return next(iter(self._engine.run(self._corrector, [self._own(frames)]))).bias_q8
 
-    def _own(self, frames):
+    def _own(self, frames: Frames) -> Frames:
         extra = np.ascontiguousarray(frames.extra[:, self._extra])
         return Frames(frames.t_us, frames.frames.copy(), frames.dt_us, extra)
 
@@ -103,7 +103,7 @@ class Firmware:
         for a, offset in zip(self._axes(), offset_q8):
             self._corrector.state[a + AXIS.OFFSET_Q8] = int(offset)
 
-    def _axes(self):
+    def _axes(self) -> list[int]:
         c = self._learning
         return [axis_at(c, i) for i in range(3)]
 
@@ -114,7 +114,7 @@ def rows(frames: Frames, first: int, end: int) -> Frames:
     return Frames(frames.t_us[part], frames.frames[part], frames.dt_us[part], frames.extra[part])
 
 
-def at_once(runs: Sequence[Callable[..., np.ndarray]], *arguments) -> list[np.ndarray]:
+def at_once(runs: Sequence[Callable[..., np.ndarray]], *arguments: Frames) -> list[np.ndarray]:
     """What every one of them returns; compiled kernels run beside each other."""
     with ThreadPoolExecutor() as pool:
         return [task.result() for task in [pool.submit(run, *arguments) for run in runs]]

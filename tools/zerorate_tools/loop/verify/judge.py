@@ -4,14 +4,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...model.term import Terms
 from ..fit.common_cause import RARE, coherence
 from ..fit.left_out import of_plays, session_misfit
-from ..fit.line import deployed
 from ..fit.noise import IS_STEEP, NATS
 from ..fit.regression import Regression, predicted
 from ..fit.single import PiecesByLine
 from ..read.sessions import Session
-from ..search.selection import Selection
+from ..search.selection import Selection, deployed
 
 
 @dataclass
@@ -40,7 +40,7 @@ class ResidualTest:
         return self.steep_nats > NATS
 
 
-def residual_test(regression, terms) -> ResidualTest:
+def residual_test(regression: Regression, terms: Terms) -> ResidualTest:
     """Look at what the terms leave, in the sensor's own axes."""
     with regression.in_sensor_axes():
         p, covariance = coherence(regression, terms)
@@ -104,13 +104,13 @@ def judge(selection: Selection, holdout: list[Session]) -> Judgement:
     )
 
 
-def _pieces(selection, holdout) -> PiecesByLine | None:
+def _pieces(selection: Selection, holdout: list[Session]) -> PiecesByLine | None:
     fitted = selection.regression.sessions
     alone = [s.name for s in fitted] == [s.name for s in holdout]
-    return PiecesByLine(*fitted) if alone else None
+    return PiecesByLine(fitted[0]) if alone else None
 
 
-def _of_each(selection, pieces) -> np.ndarray:
+def _of_each(selection: Selection, pieces: PiecesByLine) -> np.ndarray:
     """(effects,) nats that the pieces left out lose without an effect."""
     every = range(len(selection.found))
     rest = [selection.without(i).terms for i in every]
@@ -118,7 +118,9 @@ def _of_each(selection, pieces) -> np.ndarray:
     return np.array([pieces(selection.straight, r, o).sum() for r, o in zip(rest, own)])
 
 
-def residuals(selection: Selection, holdout: list[Session], effects: bool = True) -> list:
+def residuals(
+    selection: Selection, holdout: list[Session], effects: bool = True
+) -> list[tuple[np.ndarray, np.ndarray]]:
     """(residual, offset) of each session held out, with the effects found or the line alone."""
     pieces = _pieces(selection, holdout)
     if pieces:
@@ -128,7 +130,7 @@ def residuals(selection: Selection, holdout: list[Session], effects: bool = True
     return [scored(s, predicted(terms, coefficients, s)) for s in holdout]
 
 
-def scored(session: Session, model: np.ndarray):
+def scored(session: Session, model: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Residual (n, 3) with the turn-on offset taken, and that offset (3,).
 
     The offset is that of the session's first still minute, which is not scored.
@@ -154,7 +156,7 @@ def _gains(whole: Regression, selection: Selection, trained: int) -> np.ndarray:
     full = whole.fit(every).base
     holdout = range(trained, len(whole.sessions))
 
-    def misfit(terms):
+    def misfit(terms: Terms) -> float:
         g = whole.cross_products(terms)
         train_only = [g.of(np.r_[np.arange(trained), s]) for s in holdout]
         scales = [np.vstack([whole.scale[:trained], whole.scale[s : s + 1]]) for s in holdout]

@@ -73,7 +73,9 @@ def without_harmful(
     return selection
 
 
-def _grows(selection: Selection, errors: np.ndarray, without) -> np.ndarray:
+def _grows(
+    selection: Selection, errors: np.ndarray, without: Callable[[int], list[np.ndarray]]
+) -> np.ndarray:
     """(effects, 3) by which the error is larger with an effect; zero where later ones need it.
 
     errors: (1 + effects, 3) with the first so many; without: as for `without_harmful`.
@@ -139,7 +141,9 @@ def without_unshown(
     return replace(less, withdrawn=[*less.withdrawn, said])
 
 
-def _gained(before, after, pieces) -> np.ndarray:
+def _gained(
+    before: list[np.ndarray], after: list[np.ndarray], pieces: Sequence[np.ndarray]
+) -> np.ndarray:
     """(pieces,) dps^2 less over the blocks of each piece of all recordings."""
     each = (np.nansum(b**2 - a**2, axis=1) for b, a in zip(before, after))
     return np.concatenate([np.bincount(of, less) for of, less in zip(pieces, each)])

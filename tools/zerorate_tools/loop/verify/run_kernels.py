@@ -1,6 +1,6 @@
 """From an analysis to what the firmware's kernels make of it."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from os import PathLike
@@ -12,7 +12,7 @@ import pyarrow as pa
 from threadpoolctl import threadpool_limits
 
 from ...model import Model, Slot
-from ...model.term import evaluate
+from ...model.term import Terms, evaluate
 from ...recordings import Scales, open_recording
 from ...recordings.atomic import written_beside
 from ...recordings.parquet_format import TableWriter
@@ -73,13 +73,15 @@ def run_kernels(
     return judged(analysis, Courses(courses, holdout, rounding, inside=inside))
 
 
-def _inside(analysis) -> list[str]:
+def _inside(analysis: Analysis) -> list[str]:
     """Names of the sessions fitted of which pieces are left out, too: where so few were fitted that
     leaving them out whole tells little."""
     return [s.name for s in analysis.train] if analysis.few and not analysis.single else []
 
 
-def _course_of(analysis, power_ons, model, scales) -> Callable[[str, bool, Sink], Course]:
+def _course_of(
+    analysis: Analysis, power_ons: list[PowerOn], model: Model, scales: Scales
+) -> Callable[[str, bool, Sink], Course]:
     """What runs the firmware over a session by name."""
     if analysis.single:
         alone = _by_pieces(analysis, power_ons[0], scales)
@@ -93,7 +95,7 @@ def _course_of(analysis, power_ons, model, scales) -> Callable[[str, bool, Sink]
     return measurement.course
 
 
-def _by_pieces(analysis, power_on, scales) -> PieceRuns:
+def _by_pieces(analysis: Analysis, power_on: PowerOn, scales: Scales) -> PieceRuns:
     beside = [s for s in analysis.train if s.name != power_on.session.name]
     pieces = PiecesByKernels(power_on, scales, beside, shrunk=not analysis.single)
     return PieceRuns(pieces, analysis.selection, slots_of(analysis.motion))
@@ -126,7 +128,9 @@ def run_and_prune(
         analysis = with_selection(analysis, less)
 
 
-def _measured(analysis: Analysis, logs, scales: Scales, selection: Selection) -> Courses:
+def _measured(
+    analysis: Analysis, logs: Sequence[str | PathLike[str]], scales: Scales, selection: Selection
+) -> Courses:
     """What the kernels make of other effects than those of the analysis."""
     trial = replace(analysis, gate=GateReport())  # what it notes is not of what is deployed
     other = deployable(with_selection(trial, selection), scales)
@@ -139,7 +143,7 @@ def _measured(analysis: Analysis, logs, scales: Scales, selection: Selection) ->
 
 def _without_harmful(
     selection: Selection, measured: Courses, again: Callable[[Selection], Courses]
-):
+) -> Selection:
     """The selection without what the held-out sessions, or then the pieces, do worse with, or what
     pieces do no better with than by chance.
 
@@ -149,7 +153,7 @@ def _without_harmful(
     for names in (measured.holdout, *([measured.inside] if measured.inside else [])):
         after = [measured.with_first(k, names) for k in range(number + 1)]
 
-        def without(i: int, names=names):
+        def without(i: int, names: Sequence[str] = names) -> list[np.ndarray]:
             return again(selection.without(i)).with_first(number - 1, names)
 
         less = without_harmful(selection, after, without)
@@ -161,8 +165,8 @@ def _without_harmful(
     return selection
 
 
-def _sink(writer, p: PowerOn, test: bool, online: bool) -> Sink:
-    def write(name, frames, biases):
+def _sink(writer: "CorrectedWriter", p: PowerOn, test: bool, online: bool) -> Sink:
+    def write(name: str, frames: Frames, biases: dict[str, np.ndarray]) -> None:
         if not online:
             biases = {way: b for way, b in biases.items() if way != ONLINE}
         writer.write(Path(p.path).name, frames, np.full(len(frames), test), biases)
@@ -170,7 +174,9 @@ def _sink(writer, p: PowerOn, test: bool, online: bool) -> Sink:
     return write
 
 
-def power_ons_of(analysis: Analysis, logs, model: Model, scales: Scales) -> list[PowerOn]:
+def power_ons_of(
+    analysis: Analysis, logs: Sequence[str | PathLike[str]], model: Model, scales: Scales
+) -> list[PowerOn]:
     """The sessions that were used, in the order of their recordings."""
     paths = {recording_name(Path(log)): log for log in logs}
     held = {s.name: s for s in analysis.holdout}
@@ -197,7 +203,7 @@ def models_of(analysis: Analysis, model: Model, scales: Scales) -> list[Model | 
     return [None, *some, *whole]
 
 
-def _rounding(analysis, power_ons, scales):
+def _rounding(analysis: Analysis, power_ons: list[PowerOn], scales: Scales) -> np.ndarray:
     if not analysis.selection.found:
         return np.zeros(3)
     terms = analysis.selection.terms
@@ -224,7 +230,9 @@ def judged(analysis: Analysis, measured: Courses) -> Analysis:
 class CorrectedWriter(TableWriter):
     """Writes corrected.parquet, one for all recordings, piece by piece as the kernels give it."""
 
-    def write(self, recording: str, frames: Frames, test: np.ndarray, biases: dict) -> None:
+    def write(
+        self, recording: str, frames: Frames, test: np.ndarray, biases: Mapping[str, np.ndarray]
+    ) -> None:
         """Append samples of a recording (its file's name).
 
         test: (n,) bool, of the part held out; biases: (n, 3) LSB in Q8 by way, of which those in
@@ -244,7 +252,7 @@ class CorrectedWriter(TableWriter):
 
 
 def rounding_dps(
-    power_on: PowerOn, model: Model, terms, coefficients, scales: Scales
+    power_on: PowerOn, model: Model, terms: Terms, coefficients: np.ndarray, scales: Scales
 ) -> np.ndarray:
     """(3,) RMS over a session's blocks of the firmware's effects less the same terms in floats.
 
