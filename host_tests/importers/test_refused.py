@@ -98,6 +98,8 @@ LISTS = pd.DataFrame({"t_s": np.arange(300) / 100, "pulse": 70, "gyro": "[0.8, -
         ("#IMU,1,2,3\n" * 9, {}, "row 1: each line begins with '#', as comments do: .*; take it"),
         (json.dumps({"fs": 50, "data": [{"gx_dps": 1, "gy_dps": 2, "gz_dps": 3}] * 10}), {},
          "give --hz 50 .as the file says"),
+        (rates("t_s gyro_x_rpm gyro_y_rpm gyro_z_rpm".split()), {}, "the unit 'rpm' .*SIZE is how many dps"),
+        (rates("t_s r.beta r.gamma r.alpha".split()), {}, "--map gx=r.beta:dps --map gy=r.gamma:d"),
         (rates("t_s p q r".split()), {}, "if these are rates: --map gx=p:dps --map gy=q:dps"),
         # a quaternion is none, and a phone's Sensor Logger writes radians
         (rates("t_s x y z w".split()), {}, "--map gx=COLUMN:UNIT.* COLUMN one of t_s, x"),

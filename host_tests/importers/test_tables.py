@@ -279,6 +279,7 @@ SECONDS = pd.Timestamp("2026-05-01") + pd.to_timedelta(np.arange(500) // 100, "s
         ({"delay (s)": 0.5, "uptime_ms": np.arange(500) * 10}, "", 10_000),
         ({"hhmmss.ms": CLOCK}, "", 10_000),
         ({"sys_time": np.arange(500) / 100}, "", 10_000),
+        ({"T (°C)": np.arange(500) / 5000, "Zeit (s)": np.arange(500) / 100}, "", 10_000),
         ({"gps_tow": 137_649 + np.arange(500) / 100}, "", 10_000),
         ({"time": RARE.strftime("%H:%M:%S")}, "", 15_000_000),  # over midnight
         ({"header.stamp.sec": SINCE_NS // 10**9, "header.stamp.nanosec": SINCE_NS % 10**9}, "",
@@ -298,7 +299,7 @@ def test_the_time_is_found_among_columns(tmp_path, columns, mapping, step_us):
     [
         *("imu.gyro.{}", "w{}", "gyr_{}", "AngVel{}", "Gyroscope_{}", "{}gyro", "Gy{}", "g{}_mean"),
         *("w_RS_S_{} [rad s^-1]", "raw_angular_rate_{}_rad_per_s", "{} (rad/sec)", "g{}_rad_s"),
-        *("Gyro{}_left_leg", "gyro_{}_clean", "in_anglvel_{}"),
+        *("Gyro{}_left_leg", "gyro_{}_clean", "in_anglvel_{}", "{}_GYRO_OUT", "AngleRate{}"),
         *("{}-axis (rad/s)", "imu rate {} [radians per second]", "UncompGyro{}", "{}_rate"),
         *(
             "imu2_g{}",
@@ -307,6 +308,7 @@ def test_the_time_is_found_among_columns(tmp_path, columns, mapping, step_us):
             "gyro_{}_2",
             "gyroscope_lsm6ds3_c.{}",
             "gyro {} (in radians/s)",
+            "w {} [rad·s⁻¹]",
         ),
     ],
 )
@@ -323,8 +325,12 @@ def test_usual_names_and_units_of_rates_are_known(tmp_path, name):
 
 @pytest.mark.parametrize(
     ("name", "size"),
-    [("accel_{}_ug", 1e6), ("imu1.fb{}", 9.80665), ("Corrected Accelerometer Vector {} (g)", 1.0)],
-)
+    [
+        ("accel_{}_ug", 1e6), ("imu1.fb{}", 9.80665), ("Corrected Accelerometer Vector {} (g)", 1.0),
+        ("f_{}", 9.80665), ("acce_{} [m·s⁻²]", 9.80665), ("{}_ACCL_OUT (milli-g)", 1e3),
+        ("accelerationIncludingGravity.{}", 9.80665),
+    ],
+)  # fmt: skip
 def test_usual_names_and_units_of_forces_are_known(tmp_path, name, size):
     force = {name.format(axis): table(300)[f"a{axis}_g"] * size for axis in "xyz"}
     recording, _ = read(tmp_path, table(300)[HEAD.split(",")].assign(**force))

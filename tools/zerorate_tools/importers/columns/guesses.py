@@ -79,8 +79,7 @@ def _by_turning(
     if size is None:
         return None
     rates = np.array([first[wanted[axis].column] for axis in GYRO])
-    counted = (rates[np.isfinite(rates)] % 1 == 0).all()
-    if counted and _COUNTS_DPS[0] < size.dps < _COUNTS_DPS[1]:
+    if are_whole(*rates) and _COUNTS_DPS[0] < size.dps < _COUNTS_DPS[1]:
         return None
     unit = rate_unit_of(size)
     return None if unit == _AS_COUNTS else unit
@@ -178,14 +177,14 @@ def _by_values(
     """
     names = list(values)
     threes = [names[at : at + 3] for at in range(len(names) - 2)]
-    coarse = [n for n in names if (values[n] % 1 == 0).all()]
+    coarse = [n for n in names if are_whole(values[n])]
     fine = [_beside(t, order) and not {*t} <= {*coarse} for t in threes]
     units = [gravity_unit([values[n] for n in t]) if ok else None for t, ok in zip(threes, fine)]
     # 9.8 is met by chance more rarely than 1
     unit = next((unit for unit in ("m/s2", "g") if unit in units), None)
     if unit is None:
         every = np.array(list(values.values()))
-        counted = (every % 1 == 0).all() or np.abs(np.median(every, axis=1)).max() > FASTEST_DPS
+        counted = are_whole(*every) or np.abs(np.median(every, axis=1)).max() > FASTEST_DPS
         three = len(names) == len(GYRO) and not as_long_as_gravity([*every])
         return [], RAW if counted else "", names if three else []
     lengths = [np.linalg.norm([values[name] for name in three], axis=0) for three in threes]
@@ -240,6 +239,11 @@ def is_unit(four: np.ndarray) -> bool:
     squares = squares[np.isfinite(squares) & (squares > 0)]
     # between two frames a straight line is shorter, the more so the faster the turn
     return len(squares) > 1 and bool(np.quantile(np.abs(squares - 1.0), 0.9) < _OF_ONE)
+
+
+def are_whole(*columns: np.ndarray) -> bool:
+    """Whether all readings are whole numbers, as counts are."""
+    return all((values[np.isfinite(values)] % 1 == 0).all() for values in columns)
 
 
 def only_grows(values: np.ndarray) -> bool:
@@ -340,7 +344,7 @@ def _usual_length(columns: list[np.ndarray]) -> float:
 def _likely(target: str, wanted: Mapping[str, Mapped], first: Mapping[str, np.ndarray]) -> str:
     values = first[wanted[target].column]
     values = values[np.isfinite(values)]
-    counted = bool(len(values)) and (values % 1 == 0).all()
+    counted = bool(len(values)) and are_whole(values)
     if target == TEMP:
         return "lsb" if counted else "degc"
     if not all(axis in wanted for axis in ACCEL):
@@ -400,5 +404,7 @@ def _usual_step(values: np.ndarray) -> float:
 def _time_words(values: np.ndarray) -> str:
     likely = likely_units_of_time(_usual_step(values))
     would = " or ".join(f"{unit} ({hz:.4g} Hz)" for unit, hz in likely.items())
-    rows = "; or --hz, rows a second, if it counts them" if counts_rows(values) else ""
-    return f"--time-unit {would or 'with one of ' + ', '.join(TIME_S)}{rows}"
+    rows = " if it counts them" if counts_rows(values) else " if it is no time in these"
+    return (
+        f"--time-unit {would or 'with one of ' + ', '.join(TIME_S)}; or --hz, rows a second,{rows}"
+    )

@@ -6,30 +6,31 @@ import re
 from .units import RAW, unit_in_name, without_unit
 
 _AXIS = "([xyz])"
-#: After the axis: calibrated or not, or a mean of many readings.
-_MADE = "(?:cal|raw|mean|avg)?"
+#: After the axis: calibrated or not, or a mean of many readings; of registers, OUT.
+_MADE = "(?:cal|raw|mean|avg|out)?"
 #: A sensor's number, or its part: gx1, accelerometer_lsm6ds3.x.
 _NUMBER = r"\d?"
 _CHIP = r"(?:(?:bm[agi]|i[ai]m|icm|lis|lsm|mpu)\d[a-z0-9]*?)?"
 _GYRO = re.compile(
-    r"(?:.*(?:gyroscope|gyrorotation|gyro|gyr|angularvelocity|ang(?:ular)?rate|angl?vel|rotationrate|omega)"
+    r"(?:.*(?:gyroscope|gyrorotation|gyro|gyr|angularvelocity|ang(?:le|ular)?rate|angl?vel|rotationrate|omega)"
     rf"\d?{_CHIP}(?:uncalibrated|uncal|calibrated|corrected|unfilt|adc|raw|rad|data|rate|dps|values?|v"
     r"|static|noise){0,2}"
     r"|(?:.*imu\d*)?(?:gy|[wg]|wb|pqr))"
-    + f"{_AXIS}{_MADE}{_NUMBER}$|^{_AXIS}(?:gyroscope|gyro|gyr)$"
+    + f"{_AXIS}{_MADE}{_NUMBER}$|^{_AXIS}(?:gyroscope|gyro|gyr){_MADE}$"
 )
 _ACCEL = re.compile(
-    r"(?:.*(?:accelerometer|acceleration|accel|acc|specificforce)"
+    r"(?:.*(?:accelerometer|acceleration|accel|acce|accl|acc|specificforce)"
     rf"\d?{_CHIP}(?:uncalibrated|uncal|calibrated|smooth|adc|raw|data|ms2|m?g|values?|v|vector|ln|wr|static"
-    r"|noise){0,2}"
-    r"|(?:.*imu\d*)?(?:ac?|gf|fb))"
-    + f"{_AXIS}{_MADE}{_NUMBER}$|^{_AXIS}(?:accelerometer|accel|acc)$"
+    r"|noise|includinggravity){0,2}"
+    r"|(?:.*imu\d*)?(?:ac?|gf|fb?))"
+    + f"{_AXIS}{_MADE}{_NUMBER}$|^{_AXIS}(?:accelerometer|accel|accl|acc){_MADE}$"
 )
 #: Whose axis stands before a part of a body, say: GyroX_left_leg.
 _GYRO_OF = re.compile(rf".*(?:gyroscope|gyro|gyr|angvel){_AXIS}[a-z0-9]*$")
-_ACCEL_OF = re.compile(rf".*(?:accelerometer|acceleration|accel|acc){_AXIS}[a-z0-9]*$")
+_ACCEL_OF = re.compile(rf".*(?:accelerometer|acceleration|accel|acce|accl|acc){_AXIS}[a-z0-9]*$")
 #: Less gravity, or gravity as a filter has it: no measure of it.
-_FREE = re.compile(r".*(?:freeacc|useracc|linacc|gravity)|lacc")
+_FREE = re.compile(r".*(?:freeacc|useracc|linacc|(?<!including)gravity)|lacc")
+_OTHER_SENSOR = re.compile("acc|mag|euler|quat|orient|heading|grav|baro|gps|location", re.I)
 #: How sure numbers are, or what somebody takes away: no readings.
 _SPREAD = re.compile(r".*(?:covariance|variance|std|sigma|m(?:in|ax)$|bias(?:dps|rads)?[xyz0-9]*$)")
 #: As the sensor has it, and less a bias that somebody took away; motionRotation is CoreMotion's.
@@ -62,6 +63,8 @@ _PARTS = {"real": "w", "i": "x", "j": "y", "k": "z"}
 #: What aircraft call their rates.
 BODY_RATES = dict(zip(("gx", "gy", "gz"), "pqr"))
 _TURNS = {"rollrate": "gyrox", "pitchrate": "gyroy", "yawrate": "gyroz"}
+#: What browsers call theirs.
+_BROWSERS = dict(zip(("gx", "gy", "gz"), ("beta", "gamma", "alpha")))
 
 
 def spelled(name: str) -> str:
@@ -110,12 +113,19 @@ def most_alike(groups: list[dict[str, str]], gyro: dict[str, str], instance: int
 
 
 def bare_axes(names: list[str]) -> dict[str, str]:
-    """Columns that are called by their axis alone (x, xaxis), or p q r, as if they were rates;
-    beside a w they are a quaternion's."""
-    by_letter = {name.lower(): name for name in names}
-    if all(letter in by_letter for letter in BODY_RATES.values()):
-        return {target: by_letter[letter] for target, letter in BODY_RATES.items()}
+    """Columns that are called by their axis alone (x, xaxis), or p q r, or as browsers call rates;
+    beside a w they are a quaternion's, and behind another sensor's name that one's."""
+    names = [name for name in names if not of_other_sensor(name.rpartition(".")[0])]
+    by_letter = {name.rpartition(".")[2].lower(): name for name in names}
+    for called in (BODY_RATES, _BROWSERS):
+        if all(letter in by_letter for letter in called.values()):
+            return {target: by_letter[letter] for target, letter in called.items()}
     return {} if "w" in by_letter else next(iter(_groups(names, _BARE, "g")), {})
+
+
+def of_other_sensor(name: str) -> bool:
+    """Whether a name is that of a sensor other than a gyroscope."""
+    return bool(_OTHER_SENSOR.search(name)) and "gyro" not in name.lower()
 
 
 def attitudes(names: list[str]) -> list[dict[str, str]]:
@@ -147,8 +157,9 @@ def other_temperatures(names: list[str]) -> list[str]:
 
 
 def time_columns(names: list[str]) -> list[str]:
-    """The columns that look like time stamps."""
-    return [name for name in names if _TIME.match(spelled(name))]
+    """The columns that look like time stamps; T (°C) is none."""
+    found = [name for name in names if _TIME.match(spelled(name))]
+    return [name for name in found if unit_in_name("temp", name) in (None, RAW)]
 
 
 def is_step(name: str) -> bool:

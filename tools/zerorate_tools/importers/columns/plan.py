@@ -14,6 +14,7 @@ from ...recordings.recording import ACCEL, ATTITUDE, COLUMNS, GYRO, TEMP, TIME
 from ..tables.table import Chunk, Table
 from . import names as usual
 from .guesses import (
+    are_whole,
     as_long_as_gravity,
     by_habit,
     gravity_unit,
@@ -27,14 +28,13 @@ from .guesses import (
     turns_as_gravity,
 )
 from .mapping import Mapped, factor_in, map_words, parsed_mapping
-from .units import RAW, TIME_S, factors_of, kind_of, unit_in_name, unit_in_quotient, units_of
+from .units import RAW, TIME_S, factors_of, kind_of, other_unit, unit_in_name, units_of
 
 _LISTED, _TOLD = 24, 8
 #: LSB of a unit quaternion's part: finer than what cameras see.
 _PART = 1e6
 #: Logarithm of the times by which two clocks of a device are apart at most; units are 1000 times.
 _ONE_TIME = np.log(2.0)
-_OTHER_SENSOR = re.compile("acc|mag|euler|quat|orient|heading|grav|baro|gps|location", re.I)
 
 
 @dataclass
@@ -179,6 +179,8 @@ def _groups_of_rates(table: Table) -> list[dict[str, str]]:
     """Columns called as rates; not gx gy gz as long as gravity that turn as a force does, or beside
     others, where nothing else is called as a force: then they are in g."""
     groups = usual.gyro_groups(table.names)
+    if len(groups) > 1:  # counts behind what they were made into
+        groups.sort(key=lambda group: are_whole(*table.first_rows([*group.values()]).values()))
     plain = next((one for one in groups if usual.spelled(one["gx"]) == "gx"), None)
     if plain is None or usual.accel_groups(table.names) or unit_in_name("gx", plain["gx"]):
         return groups
@@ -241,17 +243,18 @@ def _check_there(table: Table, wanted: Mapping[str, Mapped], path: Path) -> None
 
 def _of_another_sensor(table: Table, path: Path) -> str:
     """What tells that the columns of three axes are another sensor's; empty where nothing does."""
-    named = _OTHER_SENSOR.search(path.stem)
-    if named and "gyro" not in path.stem.lower():
+    if usual.of_other_sensor(path.stem):
         return f"the file is called {path.name}"
     three = list(usual.bare_axes(table.names).values())
     if any(map(usual.of_other_unit, three)):
         return f"the unit of {three[0]!r}"
-    others = [name for name in table.names if name not in usual.in_units_of_time(table.names)]
+    times = {*usual.in_units_of_time(table.names)}
+    others = [name for name in table.names if name not in times]
     if others and all(map(usual.of_other_unit, others)):
         return "the units of all columns"
     named_xyz = [name for name in three if name.lower() not in usual.BODY_RATES.values()]
-    if named_xyz and as_long_as_gravity(list(table.first_rows(three).values())):
+    alone = named_xyz and not _with_gravity(table)
+    if alone and as_long_as_gravity(list(table.first_rows(three).values())):
         return "they are as long as gravity"
     return ""
 
@@ -374,7 +377,7 @@ def _unit(
         return "s"
     kind = kind_of(target)
     unit = mapped.unit or unit_in_name(target, mapped.column) or units.get(kind)
-    other = unit_in_quotient(mapped.column) if unit is None and target in (*GYRO, *ACCEL) else None
+    other = other_unit(mapped.column) if unit is None and target in (*GYRO, *ACCEL) else None
     if other is not None:
         base = "dps" if target in GYRO else "g"
         do = f"give each axis by --map {target}=COLUMN:xSIZE; SIZE is how many {base} one is"

@@ -16,20 +16,21 @@ TEMP_DEGC = {"degc": (1.0, 0.0), "c": (1.0, 0.0), "k": (1.0, -273.15), "degf": (
 RAW = "lsb"
 KINDS = {"t": "time", "g": "gyro", "a": "accel"}
 
+_RAISED = str.maketrans("⁻¹²", "-12")
 _SEC = "(?:seconds?|secs?|s)"
-_PER_SEC = rf"(?:(?:[\s_]*(?:/|per)[\s_]*|_){_SEC}|[\s_*·]{_SEC}\^?-1)"
-_SQUARED = r"(?:/s|\^?2|²|[\s_]*squared|[\s_]*/[\s_]*s)"
+_PER_SEC = rf"(?:(?:[\s_]*(?:/|per)[\s_]*|_){_SEC}|[\s_*·.]{_SEC}\^?-1)"
+_SQUARED = r"(?:/s|\^?2|[\s_]*squared|[\s_]*/[\s_]*s)"
 _METRE = "m(?:et(?:er|re)s?)?"
 #: A unit as people write it, whatever its case.
 _WRITTEN = {
     "dps": rf"dps|degs|d/s|(?:°|deg(?:ree)?s?){_PER_SEC}",
-    "mdps": rf"mdps|m(?:°|deg){_PER_SEC}",
+    "mdps": rf"mdps|m(?:illi)?(?:°|deg(?:ree)?s?){_PER_SEC}",
     "rad/s": rf"rads|rps|rad(?:ian)?s?ps|radpersec|rad(?:ian)?s?{_PER_SEC}",
-    "mrad/s": rf"mrad(?:ian)?s?{_PER_SEC}",
-    "m/s2": rf"mss|ms2|mps2|{_METRE}(?:[\s_]*(?:/|per)[\s_]*|_){_SEC}{_SQUARED}"
-    rf"|m[\s_*·]{_SEC}\^?-2",
+    "mrad/s": rf"m(?:illi)?rad(?:ian)?s?{_PER_SEC}",
+    "m/s2": rf"mss|ms/?2|mps2|{_METRE}(?:[\s_]*(?:/|per)[\s_]*|_){_SEC}{_SQUARED}"
+    rf"|m[\s_*·.]{_SEC}\^?-2",
     "g": "gs?|gees?",
-    "mg": "mg",
+    "mg": r"m(?:illi[\s_-]?)?g",
     "ug": "[uµμ]g",
     "degc": "°c|degc|celsius|℃",
     "c": "c",
@@ -56,6 +57,8 @@ _BY_NAME = {
     },
     "temp": {"t(°)": "degc"},
 }  # fmt: skip
+#: Turns a minute, degrees an hour, and so many of a unit: 0.1 dps.
+_OTHER_SIZE = re.compile(r"rpm|dph|\d[\d.^*x-]*\s*(?:dps|°/s|(?:deg|rad)/s|[mu]?g)")
 #: Of a column of an array.
 _INDEX = re.compile(r"\[\d+\]$")
 #: m/(sec^2), as Shimmer writes; no unit in brackets.
@@ -83,7 +86,7 @@ def units_of(target: str) -> tuple[str, ...]:
 
 def unit_in_name(target: str, column: str) -> str | None:
     """The unit that a column's own name ends with (gx_dps, ax [m/s2], temp_C), or None."""
-    name = _DENOMINATOR.sub(r"/\1", _INDEX.sub("", column.strip().lower()))
+    name = _DENOMINATOR.sub(r"/\1", _INDEX.sub("", column.strip().lower().translate(_RAISED)))
     kind = kind_of(target)
     if kind == "time" and (found := re.search("time([mun]s)$", name)):
         return found[1]
@@ -96,10 +99,13 @@ def unit_in_name(target: str, column: str) -> str | None:
     return next((u for u, ending in _ENDINGS[kind].items() if ending.search(name)), None)
 
 
-def unit_in_quotient(column: str) -> str | None:
-    """What a name has in brackets at its end if that is a quotient, as no channel's number is."""
+def other_unit(column: str) -> str | None:
+    """What a name ends with if that is a unit of another size: a quotient in brackets, as no
+    channel's number is, or rpm, say."""
     in_brackets = _BRACKETS.search(column.strip())
-    return in_brackets[1] if in_brackets and "/" in in_brackets[1] else None
+    text = in_brackets[1] if in_brackets else re.split(r"[\s_.]", column.strip())[-1]
+    other = in_brackets and "/" in text or _OTHER_SIZE.fullmatch(text.lower())
+    return text if other else None
 
 
 def without_unit(name: str) -> str:
