@@ -10,6 +10,7 @@ import numpy as np
 from ..errors import BadRecording
 from ..recordings import open_recording, recording_writer
 from ..recordings.atomic import written_together
+from ..recordings.reading import OpenRecording
 from ..recordings.text import lines_of
 from .tables.sentences import Rows
 from .tables.sniffing import MARK, Form, sniffed
@@ -41,7 +42,7 @@ def cut(
     return [Path(folder) / part.name for part in parts]
 
 
-def _of_recording(opened, starts: list[int], draft: Path) -> list[Path]:
+def _of_recording(opened: OpenRecording, starts: list[int], draft: Path) -> list[Path]:
     parts = [draft / f"{opened.name}-{number}.parquet" for number in range(1, len(starts) + 1)]
     done, counts = 0, np.zeros(len(parts), int)
     with ExitStack() as files:

@@ -232,7 +232,7 @@ def _converted(source: _Source, common: Common) -> _Import:
     return _Import(scales, names, batches, report)
 
 
-def _leave_out_unread(found: Gathered, plan, report: Report) -> None:
+def _leave_out_unread(found: Gathered, plan: Plan, report: Report) -> None:
     """Take columns away in which no cell is a number."""
     read = {TIME, *(name for piece in found.spool.pieces for name in piece.ends)}
     unread = [name for name in plan.wanted if name not in read]

@@ -221,7 +221,7 @@ def _in_units_of(target: str, names: list[str]) -> list[str]:
     return [name for name in names if unit_in_name(target, name) not in (None, RAW)]
 
 
-def _groups(names: list[str], pattern: re.Pattern, letter: str) -> list[dict[str, str]]:
+def _groups(names: list[str], pattern: re.Pattern[str], letter: str) -> list[dict[str, str]]:
     groups: dict[str, dict[str, str]] = {}
     for name in names:
         text = re.sub("|".join(_TURNS), lambda turn: _TURNS[turn[0]], spelled(name))

@@ -10,6 +10,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import pyarrow as pa
 
@@ -67,7 +68,9 @@ def table_apart(
 class _Rows:
     """The stream of a child's rows; the first chunk can be had twice."""
 
-    def __init__(self, child: subprocess.Popen, path: Path, advance) -> None:
+    def __init__(
+        self, child: subprocess.Popen[bytes], path: Path, advance: Callable[[float], None]
+    ) -> None:
         self._child, self._path, self._advance = child, path, advance
         self._first: Chunk | None = None
         self._read = 0.0
@@ -108,7 +111,7 @@ class _Rows:
         self.table.dropped.update(words["dropped"])
         self.table.notes += words["notes"]
 
-    def _words(self) -> dict:
+    def _words(self) -> dict[str, Any]:
         assert self._child.stderr is not None
         try:
             return json.loads(self._child.stderr.read(_WORDS_BYTES))
@@ -118,7 +121,7 @@ class _Rows:
     def _ended(self) -> Exception:
         return self._error(self._words())
 
-    def _error(self, words: dict) -> Exception:
+    def _error(self, words: dict[str, Any]) -> Exception:
         if "library" in words:
             return MissingLibrary(words["library"])
         problem, do = words.get("problem"), words.get("do", "copy the file again")
@@ -142,7 +145,7 @@ def main() -> None:
     os._exit(1 if "problem" in words or "library" in words else 0)
 
 
-def written(reader: str, path: Path, instance: int, out: int) -> dict:
+def written(reader: str, path: Path, instance: int, out: int) -> dict[str, Any]:
     """Write the rows to a file descriptor, and return the words of what came of it."""
     read, kind = _READERS[reader]
     try:

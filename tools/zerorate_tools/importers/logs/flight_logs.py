@@ -70,7 +70,9 @@ def _topic(log: Any, name: str, instance: int) -> dict[str, np.ndarray] | None:
     return None
 
 
-def _single_sensors(gyro: dict, accel: dict | None) -> list[dict[str, np.ndarray]]:
+def _single_sensors(
+    gyro: dict[str, np.ndarray], accel: dict[str, np.ndarray] | None
+) -> list[dict[str, np.ndarray]]:
     rates = {"t_us": gyro.get("timestamp_sample", gyro["timestamp"])}
     rates |= {name: gyro[axis] for name, axis in zip(GYRO, "xyz")}
     for readings in _temperature(gyro):
@@ -81,7 +83,7 @@ def _single_sensors(gyro: dict, accel: dict | None) -> list[dict[str, np.ndarray
     return [rates, force | {name: accel[axis] for name, axis in zip(ACCEL, "xyz")}]
 
 
-def _temperature(gyro: dict) -> list[dict[str, np.ndarray]]:
+def _temperature(gyro: dict[str, np.ndarray]) -> list[dict[str, np.ndarray]]:
     if "temperature" not in gyro or not np.isfinite(gyro["temperature"]).any():
         return []
     t_us = gyro.get("timestamp_sample", gyro["timestamp"])

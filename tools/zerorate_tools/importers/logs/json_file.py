@@ -8,7 +8,7 @@ import json
 import re
 from ast import literal_eval
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from itertools import chain, islice
 from pathlib import Path
@@ -149,7 +149,7 @@ def _object(line: bytes, dropped: Counter[str]) -> Any:
         return None
 
 
-def _of_records(begun, path: Path) -> Table:
+def _of_records(begun: Callable[[Counter[str]], Iterator[Any]], path: Path) -> Table:
     """begun: makes the records from the first on, of which some may be no object."""
 
     def every(dropped: Counter[str]) -> Iterator[Any]:

@@ -67,7 +67,7 @@ def _unindexed(bag: UnindexedBag, path: Path) -> Table:
     return table_of_messages(path, kinds, lambda: bag.messages(within))
 
 
-def _field_of_imu(store, kind: str) -> str | None:
+def _field_of_imu(store: Any, kind: str) -> str | None:
     """The field in which a message of a driver's own holds an Imu, as bags of ROS 1 say it."""
     fields = store.fielddefs.get(kind, ([], []))[1]
     return next((name for name, (_, of) in fields if of == _IMU), None)
@@ -113,7 +113,7 @@ class UnindexedBag:
             if topic in within or is_wanted(kind):
                 yield topic, at_ns, self._decoder(raw, kind, within.get(topic))
 
-    def _decoder(self, raw: bytes, kind: str, field: str | None):
+    def _decoder(self, raw: bytes, kind: str, field: str | None) -> Callable[[], Any]:
         def decoded() -> Any:
             message = self.store.deserialize_ros1(raw, kind)
             return getattr(message, field) if field else message

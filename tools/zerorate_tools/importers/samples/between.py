@@ -8,7 +8,7 @@ import numpy as np
 
 from ...errors import BadRecording
 from ...numbers import duration
-from ...recordings.recording import ACCEL, COLUMNS, GYRO, TEMP
+from ...recordings.recording import ACCEL, COLUMNS, GYRO, TEMP, Columns
 from .clock import longest_us
 from .spool import PLACE, TIME, Spool
 
@@ -84,7 +84,14 @@ class Bridged:
         # a further channel may have gaps; where it never comes with a sample it has its own rows
         return [n for n in names if n in lacking and (n in COLUMNS or n not in own)]
 
-    def _line(self, name, columns, whole, before, after):
+    def _line(
+        self,
+        name: str,
+        columns: Columns,
+        whole: np.ndarray,
+        before: tuple[float, float] | None,
+        after: tuple[float, float] | None,
+    ) -> np.ndarray:
         t_us, values = columns[TIME], columns[name]
         there = np.isfinite(values)
         at, readings = t_us[there], values[there]
@@ -102,7 +109,7 @@ class Bridged:
             self.stretches[name] = max(self.stretches.get(name, 0.0), float(bridged.max()))
         return filled
 
-    def _near_enough(self, columns):
+    def _near_enough(self, columns: Columns) -> Columns:
         """Less the samples that lie in a gap of the acceleration or of the temperature."""
         for group in (ACCEL, (TEMP,)):
             if group[0] in columns:

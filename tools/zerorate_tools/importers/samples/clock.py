@@ -312,7 +312,9 @@ def evened(spool: Spool, interval_us: float) -> Iterator[dict[str, np.ndarray]]:
         place += rows
 
 
-def _next_late(spool, number, place, interval_us, around) -> np.ndarray:
+def _next_late(
+    spool: Spool, number: int, place: int, interval_us: float, around: int
+) -> np.ndarray:
     """By how much the next samples are later than an even clock says; inf beyond the end."""
     if number + 1 == len(spool.pieces):
         return np.full(around, np.inf)

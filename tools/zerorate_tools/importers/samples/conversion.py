@@ -1,6 +1,6 @@
 """From physical units to integers, piece by piece, every loss counted."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,7 +10,7 @@ from zerorate_i2c.parts import PARTS
 from ...errors import BadRecording
 from ...recordings import Scales
 from ...recordings.checks import GAP
-from ...recordings.recording import ACCEL, COLUMNS, GYRO, TEMP
+from ...recordings.recording import ACCEL, COLUMNS, GYRO, TEMP, Columns
 from ...recordings.scales import EXAMPLE
 from ..columns.guesses import gravity_unit
 from ..columns.mapping import map_words
@@ -112,7 +112,9 @@ def fitting_scales(
     )
 
 
-def _fitting(kind, unit, ranges, common: Common, notes) -> float:
+def _fitting(
+    kind: str, unit: str, ranges: Sequence[float], common: Common, notes: list[str]
+) -> float:
     largest = common.largest[kind]
     lsb = next((lsb for lsb in ranges if largest * lsb < _RAIL - 0.5), ranges[-1])
     ends = round(32768 / lsb, -1 if kind == "gyro" else 0)
@@ -121,7 +123,7 @@ def _fitting(kind, unit, ranges, common: Common, notes) -> float:
     return lsb
 
 
-def _temperature_scale(common: Common, notes) -> tuple[float, float]:
+def _temperature_scale(common: Common, notes: list[str]) -> tuple[float, float]:
     """The scale of the part whose integers the readings are, so that these come back exactly."""
     seen = np.unique(common.temps)
     seen = seen[np.isfinite(seen)]
@@ -168,13 +170,15 @@ def integer_batches(
         report.doubts += of_time(np.concatenate(temps), float(last - first), found.counted)
 
 
-def _integers(name, columns, plan: Plan, scales: Scales, path: Path, report: Report) -> np.ndarray:
+def _integers(
+    name: str, columns: Columns, plan: Plan, scales: Scales, path: Path, report: Report
+) -> np.ndarray:
     values = columns[name]
     if name not in COLUMNS:
         return _channel(name, values, columns[PLACE], path)
     raw = kind_of(name) in plan.raw
     if name == TEMP and not raw:
-        values = (values - scales.temp_offset_degc) * scales.temp_lsb_per_degc
+        values = (values - (scales.temp_offset_degc or 0.0)) * (scales.temp_lsb_per_degc or 1.0)
     elif not raw:
         lsb = scales.gyro_lsb_per_dps if name in GYRO else scales.accel_lsb_per_g
         values = values * (lsb or 1.0)

@@ -10,7 +10,7 @@ import numpy as np
 from ...errors import BadRecording
 from ...numbers import duration
 from ...recordings import Scales
-from ...recordings.recording import ACCEL, COLUMNS, GYRO, TEMP, TIME
+from ...recordings.recording import ACCEL, COLUMNS, GYRO, TEMP, TIME, Columns
 from ...recordings.turning import (
     Size,
     axes_of,
@@ -215,7 +215,7 @@ def _gravity_turns_times(seen: dict[str, np.ndarray], plan: Plan, scales: Scales
     return dps_of_one(*_turns(seen, plan, scales))
 
 
-def _turns(seen, plan, scales) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _turns(seen: Columns, plan: Plan, scales: Scales) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(3, n) rates in dps, (3, n) force and (n,) seconds."""
     rates, force = (np.array([seen[name] for name in axes]) for axes in (GYRO, ACCEL))
     lsb = scales.gyro_lsb_per_dps if "gyro" in plan.raw else 1.0
@@ -258,7 +258,7 @@ def _of_turning(times: Size, counted: bool, plan: Plan, scales: Scales, path: Pa
     return _of_unit(said, meant, plan, path)
 
 
-def _of_standing(seen, plan: Plan, scales: Scales, path: Path) -> list[str]:
+def _of_standing(seen: Columns, plan: Plan, scales: Scales, path: Path) -> list[str]:
     """Rates that would turn gravity, which stays where it is."""
     if plan.by_format or len(seen.get("ax", ())) != len(seen[TIME]):
         return []

@@ -1,13 +1,14 @@
 """All rows of a table, told apart into samples and readings of slower sensors, into a spool."""
 
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
 from ...errors import BadRecording
-from ...recordings.recording import ACCEL, GYRO, TEMP
+from ...recordings.recording import ACCEL, GYRO, TEMP, Columns
 from ..columns.guesses import unit_words
 from ..columns.plan import Plan, hz_words
 from ..columns.units import TIME_S
@@ -77,7 +78,15 @@ def _are_held(rates: np.ndarray, t_us: np.ndarray) -> bool:
 
 
 class _Gathering:
-    def __init__(self, table, plan, path, hz, fast_dps, folder):
+    def __init__(
+        self,
+        table: Table,
+        plan: Plan,
+        path: Path,
+        hz: float | None,
+        fast_dps: float,
+        folder: Path | None,
+    ) -> None:
         self.table, self.plan, self.path, self.hz = table, plan, path, hz
         self.fast_dps = fast_dps
         self.readings = [name for name in plan.wanted if name != TIME]
@@ -147,6 +156,7 @@ class _Gathering:
         if TIME in columns:
             columns[TIME] = columns[TIME] * 1e6
         else:
+            assert self.hz, "it is asked for before the first row"
             with np.errstate(over="ignore"):  # what no integer holds is refused below
                 columns[TIME] = place * (1e6 / self.hz)
         columns[PLACE] = place.astype(float)
@@ -168,34 +178,34 @@ class _Gathering:
         self._measure(columns)
         self.spool.append(columns)
 
-    def _refuse_turns(self, stretches):
+    def _refuse_turns(self, stretches: list[Columns]) -> None:
         names = [n for n in (*GYRO, *ACCEL) if n in self.plan.wanted]
         refuse_turns(stretches, names, self.path)
 
-    def _some(self, number, columns):
+    def _some(self, number: int, columns: Columns) -> Columns:
         """The first samples of a piece, more of the first piece."""
         at = np.flatnonzero(np.isfinite([columns[name] for name in GYRO]).all(axis=0))
         at = at[: _KEPT if number else 50 * _KEPT]
         return {name: columns[name][at] for name in (TIME, *self.readings)}
 
-    def _less(self, columns, good, reason):
+    def _less(self, columns: Columns, good: np.ndarray, reason: str) -> Columns:
         if good.all():
             return columns
         self.dropped[reason] += int((~good).sum())
         return {name: values[good] for name, values in columns.items()}
 
-    def _has_any(self, columns):
+    def _has_any(self, columns: Columns) -> np.ndarray:
         """Not the rows of another sensor alone, whose columns are left out."""
-        return np.isfinite([columns[name] for name in self.readings]).any(axis=0)
+        return np.any(np.isfinite([columns[name] for name in self.readings]), axis=0)
 
-    def _is_something(self, columns):
+    def _is_something(self, columns: Columns) -> tuple[np.ndarray, str]:
         """Rows with three rates, or with none but a reading of another sensor."""
         rates = np.isfinite([columns[name] for name in GYRO])
         others = [columns[name] for name in self.readings if name not in GYRO]
         beside = np.isfinite(others).any(axis=0) if others else np.zeros(rates.shape[1], bool)
-        return rates.all(axis=0) | (~rates.any(axis=0) & beside), "a reading is no number"
+        return np.all(rates, axis=0) | (~np.any(rates, axis=0) & beside), "a reading is no number"
 
-    def _not_written_twice(self, columns):
+    def _not_written_twice(self, columns: Columns) -> tuple[np.ndarray, str]:
         """Not the row before once more: that is no second sample."""
         rates = np.array([columns[name] for name in GYRO])
         if self.held is None and np.isfinite(rates).any():
@@ -208,7 +218,7 @@ class _Gathering:
         why = "the reading before once more, read faster than the sensor measures"
         return ~(rows == before).all(axis=0), why if self.held else "the row before once more"
 
-    def _not_all_zero(self, columns):
+    def _not_all_zero(self, columns: Columns) -> tuple[np.ndarray, str]:
         """Three rates alone may well be zero on a coarse scale; with gravity, or 0 degC, they are
         none."""
         beside = [n for n in (ACCEL if "ax" in columns else (TEMP,)) if n in columns]
@@ -217,15 +227,15 @@ class _Gathering:
         frame = np.array([columns[name] for name in (*GYRO, *beside)])
         return ~(frame == 0).all(axis=0), "all readings are zero"
 
-    def _not_too_fast(self, columns):
+    def _not_too_fast(self, columns: Columns) -> tuple[np.ndarray, str]:
         """Rates that no sensor of this kind measures: damaged, or in another unit than said."""
         rates = np.abs([columns[name] for name in GYRO])
-        fast = (rates > self.fast_dps).any(axis=0)
+        fast = np.any(rates > self.fast_dps, axis=0)
         self.too_fast += int(fast.sum())
         self.fastest = max(self.fastest, float(rates[:, fast].max(initial=0.0)))
         return ~fast, f"faster than any such sensor measures ({self.fast_dps:g} dps)"
 
-    def _measure(self, columns):
+    def _measure(self, columns: Columns) -> None:
         for kind, axes in (("gyro", GYRO), ("accel", ACCEL)):
             if axes[0] in columns:
                 sizes = np.abs([columns[name] for name in axes])
@@ -240,14 +250,14 @@ class _Gathering:
             self.unfiltered = [self.unfiltered[0], *self.unfiltered[1::2]]
             self.beside = {name: pieces[::2] for name, pieces in self.beside.items()}
 
-    def _look_beside(self, columns, names):
+    def _look_beside(self, columns: Columns, names: Sequence[str]) -> None:
         """Keep some readings of a sensor that may have rows of its own."""
         at = np.flatnonzero(np.isfinite([columns[name] for name in names]).all(axis=0))
         at = at[: _KEPT if self.beside.get(names[0]) else 50 * _KEPT]
         for name in names if len(at) else ():
             self.beside.setdefault(name, []).append(columns[name][at])
 
-    def _check(self):
+    def _check(self) -> None:
         refuse_change_of_unit(self.unfiltered, self.plan, self.table, self.path)
         self._refuse_too_fast()
         if not self.samples:
@@ -265,7 +275,7 @@ class _Gathering:
             )
         self.runs.refuse_a_restart(self.path)
 
-    def _refuse_too_fast(self):
+    def _refuse_too_fast(self) -> None:
         """Raise BadRecording where more than a spike is faster than any range of these sensors."""
         if self.too_fast <= _FAST_SHARE * (self.samples + self.too_fast):
             return

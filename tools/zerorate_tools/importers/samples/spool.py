@@ -19,16 +19,19 @@ _LONG = 100
 _SHARED = 0.1
 
 
+#: The first and the last reading, each as (t_us, value).
+Ends = tuple[tuple[float, float], tuple[float, float]]
+
+
 @dataclass(frozen=True)
 class Piece:
-    """What is known of a stretch of rows. ends: by column, its first and its last reading, each as
-    (t_us, value)."""
+    """What is known of a stretch of rows. ends: by column."""
 
     rows: int
     first_us: float
     last_us: float
     in_order: bool
-    ends: dict[str, tuple[tuple[float, float], tuple[float, float]]] = field(default_factory=dict)
+    ends: dict[str, Ends] = field(default_factory=dict)
 
 
 class Spool:
@@ -98,7 +101,7 @@ class Spool:
         self._file.close()
 
 
-def _ends(t_us: np.ndarray, values: np.ndarray):
+def _ends(t_us: np.ndarray, values: np.ndarray) -> Ends | None:
     at = np.flatnonzero(np.isfinite(values))
     if not len(at):
         return None

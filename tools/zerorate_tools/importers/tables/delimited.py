@@ -6,6 +6,7 @@ import re
 from collections import Counter
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyarrow as pa
@@ -18,6 +19,9 @@ from ..report import cut_words
 from .sentences import COMMENTS, DAY, Rows
 from .sniffing import Form, sniffed, without_arrows
 from .table import Chunk, Table
+
+if TYPE_CHECKING:
+    import pandas
 
 _BLOCK_BYTES = 4_194_304
 _HALF_DAY_S = 43_200.0
@@ -186,7 +190,7 @@ def seconds_of(cells: pa.Array) -> np.ndarray:
     return np.where(np.isnat(since), np.nan, since.astype(float) * 1e-6)
 
 
-def _since_midnight(text) -> np.ndarray:
+def _since_midnight(text: pandas.Series) -> np.ndarray:
     """(n,) seconds of times of the day, of which an hour may end with AM or PM."""
     import pandas
 

@@ -284,7 +284,9 @@ def _numbers(cells: list[str], delimiter: str) -> int:
     return sum(is_one(cell.strip()) for cell in cells)
 
 
-def _names(lines: list[str], at: int | None, skip: int, first: list[str], delimiter: str):
+def _names(
+    lines: list[str], at: int | None, skip: int, first: list[str], delimiter: str
+) -> tuple[list[str], str]:
     if at is not None:
         names = [name.strip() for name in _cells(lines[at], delimiter)]
         above = next((line for line in reversed(lines[:at]) if line.strip()), "")
