@@ -1,9 +1,12 @@
 """A recording from a chip on a Linux I2C bus: by its FIFO where it has one, else by polling."""
 
+from __future__ import annotations
+
 from array import array
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from zerorate_i2c import clock
 from zerorate_i2c.fifo import EMPTY, Fifo
@@ -19,7 +22,7 @@ _SCALES = ("part", "odr_hz", "gyro_lsb_per_dps", "accel_lsb_per_g", "temp_lsb_pe
 
 
 def record_bus(
-    i2c, out: Path, *, source: str = "I2C", heard: Heard | None = None, **options
+    i2c: Any, out: Path, *, source: str = "I2C", heard: Heard | None = None, **options: Any
 ) -> Recorded:
     """Record from the chip on i2c into out: see stream_bus, of which options are, and Heard.
 
@@ -30,14 +33,14 @@ def record_bus(
 
 
 def stream_bus(
-    i2c,
+    i2c: Any,
     take: Take,
     *,
     seconds: float | None = None,
     source: str = "I2C",
     done: Callable[[float], object] = lambda seconds: None,
-    time_source=clock,
-    **options,
+    time_source: Any = clock,
+    **options: Any,
 ) -> None:
     """Stream from the chip on i2c, any object with the driver's two methods.
 
@@ -59,7 +62,13 @@ def stream_bus(
         raise failure
 
 
-def _run(feed, imu: MPU6050, taker: Recorder, seconds, done) -> OSError | None:
+def _run(
+    feed: FifoFeed | PollingFeed,
+    imu: MPU6050,
+    taker: Recorder,
+    seconds: float | None,
+    done: Callable[[float], object],
+) -> OSError | None:
     """Feed the taker until time is up or a signal came; the error that ended it, if one did."""
     sample = array("i", [0] * 7)
     begun = good = reported = imu.clock.ticks_us()
@@ -82,7 +91,7 @@ def _run(feed, imu: MPU6050, taker: Recorder, seconds, done) -> OSError | None:
     return None
 
 
-def _note(taker: Recorder, status: int, t_us: int, sample: array | None) -> None:
+def _note(taker: Recorder, status: int, t_us: int, sample: array[int] | None) -> None:
     if status == RESTARTED:
         taker.discard()
     elif status == VERIFIED:
@@ -98,7 +107,7 @@ def _is_verified(imu: MPU6050) -> bool:
         return False
 
 
-def _feed(imu: MPU6050):
+def _feed(imu: MPU6050) -> FifoFeed | PollingFeed:
     """The FIFO where frames come out of it, else polling."""
     fifo = FifoFeed(imu)
     if fifo.has_frames():
@@ -128,7 +137,7 @@ class FifoFeed:
         """Leave the chip as it was."""
         self._fifo.stop()
 
-    def read(self, sample: array) -> tuple[int, int, bool]:
+    def read(self, sample: array[int]) -> tuple[int, int, bool]:
         """Status, time and whether there is a sample; waits when there is none."""
         status = self._fifo.read(sample)
         if status == EMPTY:
@@ -147,7 +156,7 @@ class PollingFeed:
         self._last_us = self._due_us = imu.clock.ticks_us()
         self._pause_us = imu.period_us // _POLLS_A_PERIOD
 
-    def read(self, sample: array) -> tuple[int, int, bool]:
+    def read(self, sample: array[int]) -> tuple[int, int, bool]:
         """Status and time of the next poll and whether its sample was not seen before."""
         self._wait()
         repeats = self._imu.repeats

@@ -1,5 +1,7 @@
 """A MicroPython board on a serial port, through mpremote's raw REPL."""
 
+from __future__ import annotations
+
 import ast
 import errno
 from collections.abc import Iterator
@@ -7,8 +9,13 @@ from contextlib import contextmanager, redirect_stdout, suppress
 from dataclasses import dataclass
 from io import StringIO
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ..errors import MissingLibrary, ZerorateError
+
+if TYPE_CHECKING:
+    from mpremote.transport_serial import SerialTransport
+    from serial import Serial
 
 # A board that is just starting loses the key that stops its program; it is pressed again. Its own
 # programs and a busy machine between them may take long to answer.
@@ -43,7 +50,7 @@ class BoardError(ZerorateError):
 
 
 @contextmanager
-def connected(port: str, go_on: bool = True) -> Iterator:
+def connected(port: str, go_on: bool = True) -> Iterator[SerialTransport]:
     """Yield mpremote's transport with the board in its raw REPL, restarted: its memory is empty.
 
     Behind it the board is restarted once more and runs its main.py, unless go_on is False.
@@ -73,7 +80,7 @@ def connected(port: str, go_on: bool = True) -> Iterator:
 
 
 @contextmanager
-def listening(port: str) -> Iterator:
+def listening(port: str) -> Iterator[Serial]:
     """Yield the open serial port with nothing sent to it. Raises MissingLibrary and BoardError."""
     try:
         from serial import Serial
@@ -87,7 +94,7 @@ def listening(port: str) -> Iterator:
         yield serial
 
 
-def _stop(transport) -> None:
+def _stop(transport: SerialTransport) -> None:
     """Stop what runs, and restart the board into its raw REPL. Raises TransportError."""
     from mpremote.transport import TransportError
 
@@ -142,14 +149,14 @@ def said(traceback: str) -> str:
     return f"the board says: {last}{sends}"
 
 
-def _let_run(serial) -> None:
+def _let_run(serial: Serial) -> None:
     """Leave the raw REPL and restart, in the keys of a terminal: what runs ends, main.py begins."""
     with suppress(OSError):  # it may have been unplugged
         serial.write(b"\r\x03\x03\r\x02\x04")
         serial.flush()
 
 
-def output_of(transport, program: str, patience_s: float | None = None) -> str:
+def output_of(transport: SerialTransport, program: str, patience_s: float | None = None) -> str:
     """What a program that is run to its end on the board prints. Raises its error.
 
     patience_s: for how long the board may print nothing; two minutes where None.
@@ -185,7 +192,7 @@ class BoardFacts:
         return f"{self.machine}, MicroPython {version}, .mpy {self.mpy[0]}.{self.mpy[1]}, {code}"
 
 
-def ask(board) -> BoardFacts:
+def ask(board: SerialTransport) -> BoardFacts:
     """The facts of a board in its raw REPL."""
     machine, version, mpy, heap_free, disk_free = ast.literal_eval(output_of(board, _QUESTION))
     number = mpy >> 10

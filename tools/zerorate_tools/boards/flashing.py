@@ -1,5 +1,7 @@
 """The firmware and the driver put on a board: compiled for it, whole or not at all."""
 
+from __future__ import annotations
+
 import ast
 from base64 import b64encode
 from binascii import crc32
@@ -7,11 +9,15 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from importlib.resources import files
 from pathlib import Path, PurePosixPath
+from typing import TYPE_CHECKING
 
 from ..bounds import bytes_of
 from .compiling import board_files, machine_code, mpy_version
 from .connection import BoardError, BoardFacts, ask, connected, output_of
 from .parts import PACKAGES, REST, chosen_parts, heap_needed, needs, parts_there
+
+if TYPE_CHECKING:
+    from mpremote.transport_serial import SerialTransport
 
 _LIBRARY = "lib"
 _STAGE = "zerorate.new"
@@ -82,7 +88,13 @@ def _own_files(main: Path | None, model: Path | None) -> dict[PurePosixPath, byt
     return found
 
 
-def _told(port: str, parts, extra, say, only: bool) -> Flashed:
+def _told(
+    port: str,
+    parts: tuple[str, ...],
+    extra: dict[PurePosixPath, bytes],
+    say: Callable[[str], None],
+    only: bool,
+) -> Flashed:
     try:
         with connected(port) as board:
             facts = ask(board)
@@ -101,7 +113,7 @@ def _told(port: str, parts, extra, say, only: bool) -> Flashed:
     return flashed
 
 
-def _packages(parts, facts: BoardFacts, code: str) -> dict[PurePosixPath, bytes]:
+def _packages(parts: tuple[str, ...], facts: BoardFacts, code: str) -> dict[PurePosixPath, bytes]:
     return {_LIBRARY / name: data for name, data in board_files(parts, facts, code).items()}
 
 
@@ -136,7 +148,7 @@ def room(facts: BoardFacts, parts: Iterable[str], total: int) -> list[str]:
 class Installer:
     """Puts files on a board in its raw REPL."""
 
-    def __init__(self, board, port: str, say: Callable[[str], None]) -> None:
+    def __init__(self, board: SerialTransport, port: str, say: Callable[[str], None]) -> None:
         self._board, self._port, self._say = board, port, say
         self._waiting: list[str] = []
         text = files(__package__).joinpath("on_board/install.py").read_text(encoding="utf-8")
@@ -178,7 +190,7 @@ class Installer:
         self._say(f"{total:8d}  bytes in {len(flashed.files)} files, {sent} of them sent")
         return flashed
 
-    def _install_packages(self, contents: dict, facts: BoardFacts) -> Flashed:
+    def _install_packages(self, contents: dict[PurePosixPath, bytes], facts: BoardFacts) -> Flashed:
         flashed = Flashed(facts, {name: len(data) for name, data in contents.items()})
         for package in PACKAGES:
             below = PurePosixPath(_LIBRARY, package)
@@ -187,7 +199,9 @@ class Installer:
         self._do(f"remove({_STAGE!r})")
         return flashed
 
-    def _install_package(self, package: str, wanted: dict, flashed: Flashed) -> None:
+    def _install_package(
+        self, package: str, wanted: dict[PurePosixPath, bytes], flashed: Flashed
+    ) -> None:
         place, stage = f"{_LIBRARY}/{package}", f"{_STAGE}/{package}"
         there = self._there(place)
         if there == {str(name): _mark(data) for name, data in wanted.items()}:
@@ -202,7 +216,14 @@ class Installer:
         self._check({str(_staged(name)): data for name, data in wanted.items()}, stage)
         self._do(f"put_in_place({stage!r}, {package!r}, {_LIBRARY!r})")
 
-    def _stage(self, name: PurePosixPath, data: bytes, there, staged, flashed: Flashed) -> None:
+    def _stage(
+        self,
+        name: PurePosixPath,
+        data: bytes,
+        there: dict[str, tuple[int, int]],
+        staged: dict[str, tuple[int, int]],
+        flashed: Flashed,
+    ) -> None:
         target = str(_staged(name))
         if staged.get(target) == _mark(data):
             self._tell(name, data, "sent before")

@@ -1,5 +1,7 @@
 """A recording from a board: its frames over the serial port, with every drop counted."""
 
+from __future__ import annotations
+
 import json
 import struct
 import sys
@@ -9,6 +11,7 @@ from collections.abc import Callable
 from functools import partial
 from importlib.resources import files
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from ..ending import noted_signals
 from ..errors import ZerorateError
@@ -16,6 +19,9 @@ from ..recordings import Scales
 from ..recordings.scales import scales_from_text
 from .connection import BoardError, connected, said
 from .recorder import COLUMNS, Heard, Recorded, Recorder, Take, recorded, scales_of
+
+if TYPE_CHECKING:
+    from serial import Serial
 
 _TICKS = 1 << 30
 _SILENCE_S = 10.0
@@ -34,7 +40,7 @@ _WORDS = struct.Struct(">7h")
 SAMPLE_BYTES = _SAMPLE.size + _WORDS.size
 
 
-def record_port(port: str, out: Path, *, heard: Heard | None = None, **options) -> Recorded:
+def record_port(port: str, out: Path, *, heard: Heard | None = None, **options: Any) -> Recorded:
     """Record from the board at port into out: see stream_port, of which options are, and Heard.
 
     Raises BoardError as there, when what had been verified is kept, and InFile without room.
@@ -49,7 +55,7 @@ def stream_port(
     seconds: float | None = None,
     setup: str = "",
     done: Callable[[float], object] = lambda seconds: None,
-    **chip,
+    **chip: Any,
 ) -> None:
     """Start the streamer on the board at port; hand what it sends to what take(scales) makes.
 
@@ -83,7 +89,7 @@ def _text(name: str) -> str:
 class BoardStream:
     """What comes from a board that streams: scales, samples and messages."""
 
-    def __init__(self, serial, port: str) -> None:
+    def __init__(self, serial: Serial, port: str) -> None:
         self._serial = serial
         self._port = port
         self._reader = FrameReader()
@@ -109,7 +115,9 @@ class BoardStream:
             what = "what the board says of its scales cannot be read"
             raise BoardError(f"{self._port}: {what}; is its `imu` an MPU6050?") from error
 
-    def record(self, recorder: Recorder, seconds: float | None, done) -> BoardError | None:
+    def record(
+        self, recorder: Recorder, seconds: float | None, done: Callable[[float], object]
+    ) -> BoardError | None:
         """Hand samples to recorder until time is up or a signal came; the error that ended it."""
         begun = time.monotonic()
         reported = begun

@@ -1,9 +1,10 @@
 """Rows of a recording being made: written, and believed, only when the chip was verified."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -160,11 +161,11 @@ class Recorder:
         self._waiting.clear()
 
 
-def scales_of(values: dict) -> Scales:
+def scales_of(values: Mapping[str, Any]) -> Scales:
     """Scales from the attributes of a driver, or from the header a board sends."""
     known = ("odr_hz", "gyro_lsb_per_dps", "accel_lsb_per_g", "temp_lsb_per_degc")
     numbers = {name: float(values[name]) for name in (*known, "temp_offset_degc")}
-    more: dict = {"source": str(values["source"])}
+    more: dict[str, Any] = {"source": str(values["source"])}
     if "binding" in values:
         more[KEY] = dict(zip(NAMES, map(int, values["binding"]), strict=True))
     return Scales(sensor=str(values["part"]), more=more, **numbers)

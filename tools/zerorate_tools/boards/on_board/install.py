@@ -9,7 +9,7 @@ except ImportError:
     crc32 = None  # type: ignore[assignment]
 
 
-def is_folder(path):
+def is_folder(path: str) -> bool:
     """Whether there is a folder of this name."""
     try:
         return os.stat(path)[0] & 0x4000 != 0
@@ -17,7 +17,7 @@ def is_folder(path):
         return False
 
 
-def tell(path):
+def tell(path: str) -> None:
     """Print (path, size, CRC-32) of a file, or of all files below a folder."""
     if is_folder(path):
         for entry in os.listdir(path):
@@ -30,7 +30,7 @@ def tell(path):
     print(repr((path, size, checksum(path))))
 
 
-def checksum(path):
+def checksum(path: str) -> int | None:
     """The CRC-32 of a file; None where the board cannot work it out."""
     if crc32 is None:
         return None
@@ -44,7 +44,7 @@ def checksum(path):
             crc = crc32(memoryview(data)[:n], crc)
 
 
-def make_folders(path):
+def make_folders(path: str) -> None:
     """Make the folders that a file is in."""
     at = path.find("/")
     while at >= 0:
@@ -53,13 +53,13 @@ def make_folders(path):
         at = path.find("/", at + 1)
 
 
-def put(path, text, mode):
+def put(path: str, text: str, mode: str) -> None:
     """Write what base64 text says to a file; mode: wb or ab."""
     with open(path, mode) as file:
         file.write(a2b_base64(text))
 
 
-def copy(one, other):
+def copy(one: str, other: str) -> None:
     """Copy a file that is here already."""
     data = bytearray(256)
     with open(one, "rb") as source, open(other, "wb") as file:
@@ -70,7 +70,7 @@ def copy(one, other):
             file.write(memoryview(data)[:n])
 
 
-def remove(path):
+def remove(path: str) -> None:
     """Remove a file or a folder with all that is in it, if it is there."""
     if is_folder(path):
         for entry in os.listdir(path):
@@ -83,7 +83,7 @@ def remove(path):
             pass
 
 
-def keep_only(folder, names):
+def keep_only(folder: str, names: list[str]) -> None:
     """Remove the files below folder that are not among names."""
     if is_folder(folder):
         for entry in os.listdir(folder):
@@ -94,7 +94,7 @@ def keep_only(folder, names):
                 os.remove(path)
 
 
-def put_in_place(new, package, library):
+def put_in_place(new: str | None, package: str, library: str) -> None:
     """Make the folder new the package in library. At every moment one of them is whole.
 
     The new one first becomes a folder beside main.py, where it is found before the library.
@@ -108,7 +108,7 @@ def put_in_place(new, package, library):
     os.rename(package, place)
 
 
-def replace(new, name):
+def replace(new: str, name: str) -> None:
     """Make the file new that of this name."""
     try:
         os.rename(new, name)
