@@ -21,23 +21,24 @@ _ROWS = 256
 class Recording:
     """Rows of dt_us ax ay az temp gx gy gz from a file; `dt_us` is that of the latest."""
 
-    def __init__(self, file):
-        self.file = file
+    def __init__(self, name: str) -> None:
+        self.name = name
         self.dt_us = 0
 
-    def __iter__(self):
+    def __iter__(self) -> object:
         words = bytearray(32 * _ROWS)
-        while True:
-            count = self.file.readinto(words) // 32
-            if count == 0:
-                return
-            rows = array("i", words)
-            for i in range(count):
-                self.dt_us = rows[8 * i]
-                yield rows[8 * i + 1 : 8 * i + 8]
+        with open(self.name, "rb") as file:
+            while True:
+                count = file.readinto(words) // 32
+                if count == 0:
+                    return
+                rows = array("i", words)
+                for i in range(count):
+                    self.dt_us = rows[8 * i]
+                    yield rows[8 * i + 1 : 8 * i + 8]
 
 
-def content(name):
+def content(name: str) -> bytes:
     try:
         with open(name, "rb") as file:
             return file.read()
@@ -45,7 +46,7 @@ def content(name):
         return b""
 
 
-def switched_on(imu, odr_hz):
+def switched_on(imu: MPU6050, odr_hz: float) -> Corrector:
     """A Corrector at power-on, with the learned state and the model that lie beside this script."""
     scales = (imu.gyro_lsb_per_dps, imu.accel_lsb_per_g)
     degrees = (imu.temp_lsb_per_degc, imu.temp_offset_degc)
@@ -65,7 +66,8 @@ def switched_on(imu, odr_hz):
     return corrector
 
 
-def play(recording, target, part, dps, g, odr_hz):
+def play(part: str, dps: int, g: int, odr_hz: float) -> Corrector:
+    recording = Recording("samples.bin")
     chip = FakeMPU6050(recording, part=part)
     imu = MPU6050(
         FakeI2C(chip), full_scale_dps=dps, full_scale_g=g, odr_hz=odr_hz, clock=FakeClock()
@@ -75,27 +77,20 @@ def play(recording, target, part, dps, g, odr_hz):
     state = corrector.state
     sample = array("i", [0] * 7)
     row = array("i", [0] * 6)
-    while chip.step():
-        status = imu.read(sample)
-        if status != RESTARTED and status != SUSPECT:
-            corrector.update(sample, recording.dt_us)
-        for i in range(3):
-            row[i] = state[_OUT_Q8 + i] + state[_EFFECT_Q8 + i]
-            row[3 + i] = sample[4 + i]
-        target.write(row)
+    with open("out.bin", "wb") as target:
+        while chip.step():
+            status = imu.read(sample)
+            if status != RESTARTED and status != SUSPECT:
+                corrector.update(sample, recording.dt_us)
+            for i in range(3):
+                row[i] = state[_OUT_Q8 + i] + state[_EFFECT_Q8 + i]
+                row[3 + i] = sample[4 + i]
+            target.write(row)
     print(corrector.explain())
     return corrector
 
 
-with open("samples.bin", "rb") as source, open("out.bin", "wb") as target:
-    corrector = play(
-        Recording(source),
-        target,
-        sys.argv[1],
-        int(sys.argv[2]),
-        int(sys.argv[3]),
-        float(sys.argv[4]),
-    )
+corrector = play(sys.argv[1], int(sys.argv[2]), int(sys.argv[3]), float(sys.argv[4]))
 with open("state.bin", "wb") as file:
     file.write(corrector.state)
     if corrector.effects is not None:

@@ -10,13 +10,16 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from tempfile import gettempdir
-from typing import TYPE_CHECKING, Any
+from types import ModuleType
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from ..errors import MissingLibrary, ZerorateError
 from .devices import Device
 
 if TYPE_CHECKING:
     from distributed import Client
+
+_T = TypeVar("_T")
 
 #: So many tasks wait at the scheduler at most, whatever the size of the fleet.
 MOST_WAITING = 1000
@@ -86,7 +89,7 @@ def cluster(scheduler: str | None = None, workers: int | None = None) -> Iterato
         yield client
 
 
-def _started(distributed, workers: int) -> Any:
+def _started(distributed: ModuleType, workers: int) -> Any:
     """A cluster of processes of this machine. Raises ZerorateError where none can begin."""
     try:
         return distributed.LocalCluster(
@@ -117,7 +120,7 @@ def _safe_path() -> Iterator[None]:
             os.environ["PYTHONSAFEPATH"] = before
 
 
-def _client_of(distributed, address: str) -> Client:
+def _client_of(distributed: ModuleType, address: str) -> Client:
     try:
         client = distributed.Client(address, timeout=_CONNECT_S)
     except (OSError, ValueError) as error:
@@ -159,8 +162,8 @@ def size_of(client: Client) -> int:
 
 
 def run_all(
-    client: Client, function: Callable[[list], Any], batches: Sequence[list]
-) -> Iterator[tuple[list, Any]]:
+    client: Client, function: Callable[[list[_T]], Any], batches: Sequence[list[_T]]
+) -> Iterator[tuple[list[_T], Any]]:
     """Yield (batch, result) as they finish.
 
     When a worker dies, Dask blames all that it had been given. So a blamed batch comes again an
@@ -171,11 +174,11 @@ def run_all(
     from distributed.scheduler import KilledWorker
 
     waiting = list(reversed(batches))
-    suspects: list[list] = []
-    under_way: dict[Any, list] = {}
+    suspects: list[list[_T]] = []
+    under_way: dict[Any, list[_T]] = {}
     finished = as_completed()
 
-    def submit(batch: list) -> None:
+    def submit(batch: list[_T]) -> None:
         future = client.submit(function, batch, pure=False)
         under_way[future.key] = batch
         finished.add(future)

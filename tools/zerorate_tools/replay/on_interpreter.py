@@ -19,12 +19,12 @@ _CHANNELS = const(111)
 # layout: end
 
 
-def whole(name):
+def whole(name: str) -> "array[int]":
     with open(name, "rb") as file:
         return array("i", file.read())
 
 
-def store(name, words):
+def store(name: str, words: "array[int]") -> None:
     with open(name, "wb") as file:
         file.write(words)
 
@@ -52,7 +52,7 @@ if effects:
     corrector.use_model(model)
 
 
-def out(verdict):
+def out(verdict: int) -> "array[int]":
     bias, effect, source, quality = (
         state[at : at + 3] for at in (_OUT_Q8, _EFFECT_Q8, _SOURCE, _QUALITY_Q8)
     )
