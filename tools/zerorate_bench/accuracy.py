@@ -177,14 +177,14 @@ def sections(found: Mapping[str, Any]) -> Iterator[str]:
     yield from _real(found["real_rms_mdps"])
 
 
-def _day(figures: Mapping[str, Mapping]) -> Iterator[str]:
+def _day(figures: Mapping[str, Mapping[str, Any]]) -> Iterator[str]:
     rows = [[peer, number(f["all"]), number(f["later"])] for peer, f in figures.items()]
     yield "## A simulated day: half of it moving, 25 degC of change\n"
     yield _DAY
     yield table(["RMS bias error, mdps", "all day", "after the first minute"], rows)
 
 
-def _honesty(figures: Mapping[str, Mapping]) -> Iterator[str]:
+def _honesty(figures: Mapping[str, Mapping[str, Any]]) -> Iterator[str]:
     rows = [
         [name, *(f"{100 * shares[part]:.0f} %" for part in ("all", "first"))]
         for name, shares in figures.items()
@@ -194,7 +194,7 @@ def _honesty(figures: Mapping[str, Mapping]) -> Iterator[str]:
     yield table(["truth within two sigma", "all", f"first {FIRST_S:.0f} s"], rows)
 
 
-def _second_power_on(figures: Mapping[str, Mapping], seeds: int) -> Iterator[str]:
+def _second_power_on(figures: Mapping[str, Mapping[str, Any]], seeds: int) -> Iterator[str]:
     header = ["RMS bias error, mdps", "how"]
     header += [f"{name[-1].upper()} {part}" for part in ("all", "first 15 s") for name in figures]
     rows: list[list[object]] = []
@@ -209,7 +209,7 @@ def _second_power_on(figures: Mapping[str, Mapping], seeds: int) -> Iterator[str
     yield table(header, rows)
 
 
-def _real(figures: Mapping | None) -> Iterator[str]:
+def _real(figures: Mapping[str, Any] | None) -> Iterator[str]:
     yield "## Real recordings at rest\n"
     if figures is None:
         yield "Left out: no real recordings here; ZERORATE_DATA names their folder.\n"

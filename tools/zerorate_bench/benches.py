@@ -32,7 +32,7 @@ def add_benches(parser: argparse.ArgumentParser) -> None:
         _add(benches.add_parser(name, help=bench.help, description=bench.help), bench)
 
 
-def _add(parser, bench: Bench) -> None:
+def _add(parser: argparse.ArgumentParser, bench: Bench) -> None:
     for flag, how in bench.options.items():
         parser.add_argument(flag, **how)
     parser.add_argument("--out", type=Path, metavar="FILE", help="write Markdown, not print it")

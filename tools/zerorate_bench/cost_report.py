@@ -111,7 +111,7 @@ def run(quick: bool, advance: Callable[[float], None]) -> dict[str, Any]:
     return found
 
 
-def _measures(work: Workload, hours) -> dict[str, Callable[[], Any]]:
+def _measures(work: Workload, hours: Sequence[float]) -> dict[str, Callable[[], Any]]:
     return {
         "heap_bytes_per_update_by_interpreter": lambda: heap_bytes_per_update(work),
         "native": lambda: native_cost(work),

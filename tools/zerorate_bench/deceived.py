@@ -344,13 +344,13 @@ def in_markdown(found: Mapping[str, Any]) -> str:
     return "\n".join(parts)
 
 
-def _rows(worlds: Mapping[str, list[dict]], before: str) -> Iterator[list[str]]:
+def _rows(worlds: Mapping[str, list[dict[str, Any]]], before: str) -> Iterator[list[str]]:
     every = [row for rows in worlds.values() for row in rows]
     for name, rows in (*worlds.items(), ("**all**", every)):
         yield [name, *_row(rows, before)]
 
 
-def _row(rows: list[dict], before: str) -> list[str]:
+def _row(rows: list[dict[str, Any]], before: str) -> list[str]:
     count = sum(row["sure_s"] > SURE_S for row in rows)
     worst = max(row["worst_mdps"] for row in rows)
     honest = 100 * float(np.mean([row["honest"] for row in rows]))

@@ -6,12 +6,15 @@ chip measured, or all of it was handed out before. It was learned from when the 
 did not take it back, and said of no window of the second after it that it was no rest.
 """
 
+from __future__ import annotations
+
 import random
 from array import array
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
+from typing import Any
 
 from zerorate.checked import CheckedCorrector
 from zerorate.corrector import Corrector, Sensor
@@ -38,10 +41,10 @@ _NOISE_LSB = 6.5
 class World:
     """A device at rest: its chip's samples, the latest of which are remembered."""
 
-    def __init__(self, seed: int, bias_lsb=_BIAS_LSB) -> None:
+    def __init__(self, seed: int, bias_lsb: Sequence[int] = _BIAS_LSB) -> None:
         self._random = random.Random(seed)
         self._bias_lsb = bias_lsb
-        self.gain = lambda: 1
+        self.gain: Callable[[], int] = lambda: 1
         self.recent: deque[tuple[int, ...]] = deque(maxlen=_RECENT)
 
     def samples(self) -> Iterator[tuple[int, ...]]:
@@ -280,7 +283,7 @@ _BINDING = bytes([0x68, 0, 0, 3])
 _ROUNDS = 3
 
 
-def run() -> dict:
+def run() -> dict[str, Any]:
     """Inject everything and return both tables.
 
     faults: name -> injected, detected, learned_from (false samples that what was learned holds),
@@ -290,7 +293,7 @@ def run() -> dict:
     return {"faults": {name: run_fault(name) for name in FAULTS}, "store": run_store()}
 
 
-def passed(found: dict) -> bool:
+def passed(found: dict[str, Any]) -> bool:
     """Every fault detected and nothing learned from any, no wrong load and no exception."""
     store = found["store"]
     return (
@@ -304,7 +307,7 @@ def passed(found: dict) -> bool:
     )
 
 
-def in_markdown(found: dict) -> str:
+def in_markdown(found: dict[str, Any]) -> str:
     rows = [[name, *row.values()] for name, row in found["faults"].items()]
     store = found["store"]
     counts = [store[name] for name in ("cuts", "flips", "wrong_loads", "exceptions")]
@@ -364,10 +367,10 @@ class StoreUnderFaults:
     def _store(self) -> Store:
         return Store(self._memory, _BINDING, 4 * self._words)
 
-    def _save(self, payload: array) -> None:
+    def _save(self, payload: array[int]) -> None:
         self._store().save(payload)
 
-    def _judge(self, allowed: list[array]) -> None:
+    def _judge(self, allowed: list[array[int]]) -> None:
         payload = array("i", bytes(4 * self._words))
         try:
             reason = self._store().load(payload)
@@ -377,7 +380,7 @@ class StoreUnderFaults:
         if reason != LOADED or payload not in allowed:
             self.counts["wrong_loads"] += 1
 
-    def _payload(self, round_: int) -> array:
+    def _payload(self, round_: int) -> array[int]:
         return array(
             "i", [(word * 40503 + round_ * 977) % 100000 - 50000 for word in range(self._words)]
         )

@@ -14,6 +14,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from itertools import product
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from zerorate_tools.cli import main
@@ -178,12 +179,12 @@ def _far(recording: Recording, truth: np.ndarray, at: np.ndarray, first: int) ->
     return float(np.mean(np.abs(recording.gyro_dps()[inside] - truth[at[inside] + first])))
 
 
-def passed(found: dict) -> bool:
+def passed(found: dict[str, Any]) -> bool:
     """Whether nothing is wrong, misleading or without a cure."""
     return not any(row["outcome"] in _BAD for row in found["rows"])
 
 
-def in_markdown(found: dict) -> str:
+def in_markdown(found: dict[str, Any]) -> str:
     """A page: how many there are of each outcome, then each log."""
     outcomes = [row["outcome"] for row in found["rows"]]
     kinds = (RIGHT, BY_ITS_WORDS, REFUSED, *_BAD)

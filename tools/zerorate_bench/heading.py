@@ -4,16 +4,17 @@ VQF runs with its own bias estimation off. The bias is that of the first rest. T
 against the optics, over the motion, after a constant turn between their frame and the sensor's.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 from zerorate_tools.demo.broad import Trial, trials
-from zerorate_tools.loop.motion.by_windows import by_windows
+from zerorate_tools.loop.motion.by_windows import RateScale, by_windows
 from zerorate_tools.loop.motion.device import DifferentDevices, Shown, distance
 from zerorate_tools.loop.motion.matrix import beside, fit
 from zerorate_tools.loop.motion.moving import Moving, in_the_axes_of, moving_of
@@ -38,13 +39,13 @@ GROUPS = (("01", "02", "06", "12", "16", "24"), ("21", "29", "30"))
 LIMITS = (0.7, 2.5)
 
 
-def run(data: list[Path], advance: Callable[[float], None] = lambda n: None) -> dict:
+def run(data: list[Path], advance: Callable[[float], None] = lambda n: None) -> dict[str, Any]:
     """Trial -> degrees before and after, fitted on the other trials of its group and on its own
     first half; and whether both groups together are refused. Raises ZerorateError."""
     every = {t.name[:2]: t for folder in data for t in trials(folder)}
     with TemporaryDirectory() as scratch:
         moving = {n: moving_in(t, Path(scratch) / f"{n}.parquet") for n, t in every.items()}
-    found: dict = {"others": {}, "halves": {}, **_refused(list(moving.values()))}
+    found: dict[str, Any] = {"others": {}, "halves": {}, **_refused(list(moving.values()))}
     seen = {n: _seen(t, moving[n]) for n, t in every.items()}
     found["optics"] = _by_optics(seen, found["refused"])
     for number, group in enumerate(GROUPS):
@@ -72,7 +73,7 @@ def moving_in(trial: Trial, path: Path) -> Moving:
     return moving
 
 
-def _refused(moving: list[Moving]) -> dict[str, list]:
+def _refused(moving: list[Moving]) -> dict[str, list[Any]]:
     """Both groups, and those that could also be with the others."""
     try:
         by_windows(moving, [])
@@ -87,7 +88,7 @@ def _seen(trial: Trial, moving: Moving) -> Moving:
     return replace(moving, given=in_the_axes_of(moving, trial.attitude), mounted=True)
 
 
-def _by_optics(seen: dict[str, Moving], groups) -> dict[str, list[float]]:
+def _by_optics(seen: dict[str, Moving], groups: Sequence[Sequence[str]]) -> dict[str, list[float]]:
     """Trial -> chi-squared, of 9 degrees of freedom, of its matrix by the optics being that of the
     other trials of each group."""
     fitted = {name: beside(one, np.zeros((3, 3))) for name, one in seen.items()}
@@ -100,14 +101,14 @@ def _by_optics(seen: dict[str, Moving], groups) -> dict[str, list[float]]:
     }
 
 
-def _row(trial: Trial, group: int, shown, first: float = 0.0) -> dict:
+def _row(trial: Trial, group: int, shown: RateScale | None, first: float = 0.0) -> dict[str, Any]:
     """Degrees RMS, over the motion from a share of it on; as deployed: only what was found."""
     matrix = shown.deployed if shown is not None and shown.found else np.zeros((3, 3))
     before, after = (heading_error_deg(trial, m, first) for m in (np.zeros((3, 3)), matrix))
     return {"group": group, "before": before, "after": after, "found": bool(matrix.any())}
 
 
-def _half(trial: Trial, moving: Moving, group: int) -> dict:
+def _half(trial: Trial, moving: Moving, group: int) -> dict[str, Any]:
     """Fitted on the first half of the motion, judged on the second; beside that what the optics
     alone, fitted to that second half itself, would leave: no matrix leaves much less."""
     at = np.flatnonzero(trial.moving)
@@ -149,7 +150,7 @@ def _heading(ours: Rotation, optical: Rotation, frame: Rotation) -> Array:
     return 2.0 * np.unwrap(np.arctan2(q[:, 2], q[:, 3]), period=np.pi)
 
 
-def in_markdown(found: dict) -> str:
+def in_markdown(found: dict[str, Any]) -> str:
     """Both tables, with what the medians must be, and who was told from whom."""
     parts = [
         "# Heading in motion, measured",

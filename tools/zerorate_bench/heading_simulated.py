@@ -168,7 +168,7 @@ def run(
     processes: int,
     resume: Path | None = None,
     advance: Callable[[float], None] = lambda n: None,
-) -> dict:
+) -> dict[str, Any]:
     """What was said of every case: `devices` of each kind with errors, of each without, and as
     many as all of these whose hand pushes as it turns. resume: as of `outcomes`."""
     cases = [Case(k, i, off) for off in (True, False) for k in KINDS for i in range(devices)]
@@ -219,7 +219,14 @@ def simulated(case: Case) -> tuple[Recording, Array, Array]:
     return recorded(case, rng, hz, seconds, rng.uniform(0.0, 0.9))
 
 
-def recorded(case: Case, rng, hz: float, seconds: float, resting: float, errors=None):
+def recorded(
+    case: Case,
+    rng: np.random.Generator,
+    hz: float,
+    seconds: float,
+    resting: float,
+    errors: Callable[[np.random.Generator], Array] | None = None,
+) -> tuple[Recording, Array, Array]:
     """As `simulated`, for so many seconds of which a share rests; errors: draws the matrix."""
     parts = list(_stretches(case, rng, hz, seconds, resting))
     rate, force, up = (np.concatenate(part) for part in zip(*parts))
@@ -251,7 +258,9 @@ def _errors(rng: np.random.Generator) -> Array:
     )
 
 
-def _stretches(case: Case, rng, hz, seconds, resting) -> Iterator[tuple[Array, ...]]:
+def _stretches(
+    case: Case, rng: np.random.Generator, hz: float, seconds: float, resting: float
+) -> Iterator[tuple[Array, ...]]:
     """Rates, specific force and the vertical, in the body: motion of 20 to 120 s and rests in
     turn."""
     dt_s, at_s = 1 / hz, 0.0
@@ -274,7 +283,7 @@ def _stretches(case: Case, rng, hz, seconds, resting) -> Iterator[tuple[Array, .
         at_s += moving / (1 - resting)
 
 
-def in_markdown(found: dict) -> str:
+def in_markdown(found: dict[str, Any]) -> str:
     """The page: a table by kind of motion, and one of devices without errors."""
     rows = found["rows"]
     known = [_of_kind(kind, [r for r in rows if r["kind"] == kind and r["off"]]) for kind in KINDS]
@@ -292,16 +301,16 @@ def in_markdown(found: dict) -> str:
     )
 
 
-def _found(rows: list[dict]) -> list[dict]:
+def _found(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
     return [r for r in rows if r["found"]]
 
 
-def _share(of: list, some: list, limit: float) -> list[str]:
+def _share(of: list[dict[str, Any]], some: list[dict[str, Any]], limit: float) -> list[str]:
     share = 100 * len(some) / max(len(of), 1)
     return [f"{len(some)} of {len(of)}", f"{limit} %", "yes" if share <= limit else "NO"]
 
 
-def _of_kind(kind: str, rows: list[dict]) -> list[str]:
+def _of_kind(kind: str, rows: list[dict[str, Any]]) -> list[str]:
     entries = np.array([[*e, r["found"]] for r in rows for e in r["entries"]]).reshape(-1, 4)
     true, said, sigma, found = entries.T
     worth = sigma < np.abs(true) / 3

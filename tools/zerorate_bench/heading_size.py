@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from zerorate_tools.recordings.writing import write_recording
@@ -31,7 +32,7 @@ class Size:
 SIZES = (Size(6, 180.0, 286.0, 0.2, 15.0, 1.0), Size(1, 8 * _HOUR_S, 100.0, 0.5, 60.0, 1.0))
 
 
-def run() -> list[dict]:
+def run() -> list[dict[str, Any]]:
     """Seconds of processor and GB of `zerorate close` for each size, and what it found."""
     return [_measured(size) for size in SIZES]
 
@@ -46,17 +47,17 @@ def write(size: Size, folder: Path) -> None:
         write_recording(recording, folder / f"run-{number}.parquet")
 
 
-def _measured(size: Size) -> dict:
+def _measured(size: Size) -> dict[str, Any]:
     cost = close_cost(f"from {__name__} import *\nwrite({size!r}, folder)")
     return {"size": str(size), "limits": [size.most_s, size.most_gb]} | cost
 
 
-def passed(found: list[dict]) -> bool:
+def passed(found: list[dict[str, Any]]) -> bool:
     """Whether each is within its limits."""
     return all(f["cpu_s"] <= f["limits"][0] and f["gb"] <= f["limits"][1] for f in found)
 
 
-def in_markdown(found: list[dict]) -> str:
+def in_markdown(found: list[dict[str, Any]]) -> str:
     """A row each, beside its limits."""
     rows = [
         [f["size"], f"{f['cpu_s']:.0f}", f"{f['gb']:.1f}", "{:g} s, {:g} GB".format(*f["limits"])]

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,7 +51,7 @@ _RESTING = {
     ],
 }
 _OWN_FORM = {"document": True, "threshold": 0}
-FORMS: dict[str, dict] = {
+FORMS: dict[str, dict[str, Any]] = {
     "coarse, then fine (the default)": {},
     "the document's own form, steps of 50 mdps": {**_OWN_FORM, "coarse_dps": 0.05},
     "the document's own form, steps of 12.5 mdps": {**_OWN_FORM, "coarse_dps": 0.0125},
@@ -76,9 +77,9 @@ def peers() -> dict[str, Peer]:
     }
 
 
-def simulated(ways: Mapping[str, Peer], seeds: Sequence[int] = SEEDS) -> dict:
+def simulated(ways: Mapping[str, Peer], seeds: Sequence[int] = SEEDS) -> dict[str, Any]:
     """Scenario -> way -> each seed's RMS error after two minutes, mdps, windows, honesty."""
-    found: dict = {}
+    found: dict[str, Any] = {}
     for name in SCENARIOS:
         found[name] = {
             way: {"rms_mdps": [], "learned": 0, "wrong": 0, "within": []}
@@ -99,7 +100,7 @@ def _without_curve(name: str) -> Description:
 
 
 def _measure(
-    rows: dict[str, dict], ways: Mapping[str, Peer], scene: str | Description, seed: int
+    rows: dict[str, dict[str, Any]], ways: Mapping[str, Peer], scene: str | Description, seed: int
 ) -> None:
     recording, truth = simulate(scene, session=1, seed=seed)
     one = given(recording)
@@ -110,7 +111,7 @@ def _measure(
             _add(rows[way], row, round(SETTLED_S * one.odr_hz))
 
 
-def _add(row: dict, measured: dict, after: int) -> None:
+def _add(row: dict[str, Any], measured: dict[str, Any], after: int) -> None:
     row["rms_mdps"].append(round(rms_mdps(measured["error_dps"][after:]), 1))
     row["learned"] += measured.get("learned", 0)
     row["wrong"] += measured.get("wrong", 0)
@@ -118,9 +119,13 @@ def _add(row: dict, measured: dict, after: int) -> None:
         row["within"].append(measured["within_two_sigma"])
 
 
-def on_broad(ways: Mapping[str, Peer], folder: Path) -> dict:
+def on_broad(ways: Mapping[str, Peer], folder: Path) -> dict[str, Any]:
     """trials: each one's true bias; whole, motion: way -> errors per trial and axis, mdps."""
-    found: dict = {"trials": {}, "whole": {w: {} for w in ways}, "motion": {w: {} for w in ways}}
+    found: dict[str, Any] = {
+        "trials": {},
+        "whole": {w: {} for w in ways},
+        "motion": {w: {} for w in ways},
+    }
     for trial in trials(folder):
         truth = true_bias(trial)
         found["trials"][trial.name] = {n: np.round(v, 5).tolist() for n, v in vars(truth).items()}
@@ -130,14 +135,14 @@ def on_broad(ways: Mapping[str, Peer], folder: Path) -> dict:
     return found
 
 
-def _on_trial(peer: Peer, trial: Trial, truth: TrueBias) -> dict:
+def _on_trial(peer: Peer, trial: Trial, truth: TrueBias) -> dict[str, Any]:
     one = given(trial.recording())
     row = _measured(peer, one, np.tile(truth.bias_dps, (len(one.rate_dps), 1)))
     error = row.pop("error_dps")[round(TRIAL_SETTLED_S * trial.hz) :]
     return {"rms_mdps": [round(rms_mdps(error[:, axis]), 1) for axis in range(3)], **row}
 
 
-def _measured(peer: Peer, one: Given, bias: NDArray[np.float64]) -> dict:
+def _measured(peer: Peer, one: Given, bias: NDArray[np.float64]) -> dict[str, Any]:
     if not isinstance(peer, Judged):
         return {"error_dps": peer([one])[0] - bias}
     peer.truth_dps = [bias]
@@ -154,19 +159,19 @@ def _cost() -> dict[str, dict[str, float]] | str:
         return str(error)
 
 
-def run(data: Path | None = None) -> dict:
+def run(data: Path | None = None) -> dict[str, Any]:
     """Measure and return all figures.
 
     data: the folder of BROAD's .mat files; without it only the simulated table is made.
     Raises ZerorateError for a folder without one.
     """
     ways = peers()
-    found: dict = {} if data is None else {"broad": on_broad(ways, data)}
+    found: dict[str, Any] = {} if data is None else {"broad": on_broad(ways, data)}
     found |= {"simulated": simulated(ways), "flicker": by_flicker()}
     return found | {"settling": settling(), "cost": _cost()}
 
 
-def settling() -> dict:
+def settling() -> dict[str, Any]:
     """Form -> seconds until within 50 mdps, and the ripple (standard deviation) at the end, mdps.
 
     On a device that lies flat with biases of 2.0 and -1.5 dps on its level axes; the slower, and
@@ -259,11 +264,11 @@ _TRUTH_HEAD = ["trial", "bias", "one sigma", "by its motion alone", "one sigma"]
 _TRUTH = ("bias_dps", "sigma_dps", "motion_dps", "motion_sigma_dps")
 
 
-def in_markdown(found: Mapping) -> str:
+def in_markdown(found: Mapping[str, Any]) -> str:
     return "\n".join(_parts(found))
 
 
-def _parts(found: Mapping) -> Iterator[str]:
+def _parts(found: Mapping[str, Any]) -> Iterator[str]:
     scenarios = found["simulated"]
     yield "# Bias without rest, measured\n\n`zerorate bench motion` wrote this page.\n"
     yield "Simulated, RMS error after two minutes, mdps, median over the seeds:\n"
@@ -286,20 +291,20 @@ def _parts(found: Mapping) -> Iterator[str]:
         yield table(_TRUTH_HEAD, list(_truth(broad["trials"])))
 
 
-def _medians(scenarios: Mapping) -> Iterator[list[str]]:
+def _medians(scenarios: Mapping[str, Any]) -> Iterator[list[str]]:
     for name, rows in scenarios.items():
         errors = [np.median(rows[way]["rms_mdps"]) for way in (*_MEDIANS, _DECISION)]
         yield [f"{name}: {_SCENES[name]}", *(f"{x:,.1f}" for x in errors)]
 
 
-def _errors(scenarios: Mapping) -> Iterator[list[str]]:
+def _errors(scenarios: Mapping[str, Any]) -> Iterator[list[str]]:
     for way in next(iter(scenarios.values())):
         yield [way, *(_cell(rows[way]) for rows in scenarios.values())]
     yield ["**must be**", *(_wanted(name) for name in scenarios)]
     yield ["**met**", *(_kept(scenarios, name) for name in scenarios)]
 
 
-def _cell(row: Mapping) -> str:
+def _cell(row: Mapping[str, Any]) -> str:
     learned = f" ({row['learned']})" if row["learned"] else ""
     return ", ".join(f"{x:.1f}" for x in row["rms_mdps"]) + learned
 
@@ -311,7 +316,7 @@ def _wanted(name: str) -> str:
     return f"decision <= {limit:.0f}" + (", median" if name in _BY_MEDIAN else "")
 
 
-def _kept(scenarios: Mapping, name: str) -> str:
+def _kept(scenarios: Mapping[str, Any], name: str) -> str:
     limit, rows = LIMITS_MDPS[name], scenarios[name]
     if limit is None:
         return "yes" if rows["in motion"]["wrong"] == 0 else "**no**"
@@ -320,19 +325,19 @@ def _kept(scenarios: Mapping, name: str) -> str:
     return "yes" if judged <= limit else "**no**"
 
 
-def _honesty(scenarios: Mapping) -> Iterator[list[str]]:
+def _honesty(scenarios: Mapping[str, Any]) -> Iterator[list[str]]:
     for way in next(iter(scenarios.values())):
         within = [rows[way]["within"] for rows in scenarios.values()]
         if any(within):
             yield [way, *(f"{100 * np.mean(one):.0f} %" if one else "" for one in within)]
 
 
-def _by_flicker(scenes: Mapping) -> Iterator[list[str]]:
+def _by_flicker(scenes: Mapping[str, Any]) -> Iterator[list[str]]:
     for name, shares in scenes.items():
         yield [name, *(f"{100 * share:.0f} %" for share in shares)]
 
 
-def _cost_words(found: Mapping | str) -> str:
+def _cost_words(found: Mapping[str, Any] | str) -> str:
     if isinstance(found, str):
         return f"not counted: {found}"
     costs = [
@@ -342,7 +347,7 @@ def _cost_words(found: Mapping | str) -> str:
     return "; ".join(costs) + "."
 
 
-def _on_broad(broad: Mapping) -> Iterator[list[str]]:
+def _on_broad(broad: Mapping[str, Any]) -> Iterator[list[str]]:
     for way in broad["whole"]:
         cells = []
         for part in ("whole", "motion"):
@@ -353,16 +358,16 @@ def _on_broad(broad: Mapping) -> Iterator[list[str]]:
         yield [way, *cells, f"{100 * np.mean(known):.0f} %" if known else ""]
 
 
-def _truth(trials: Mapping) -> Iterator[list[str]]:
+def _truth(trials: Mapping[str, Any]) -> Iterator[list[str]]:
     for name, truth in trials.items():
         yield [name, *(" ".join(f"{x:.3f}" for x in truth[column]) for column in _TRUTH)]
 
 
-def _beside_vqf(broad: Mapping) -> str:
+def _beside_vqf(broad: Mapping[str, Any]) -> str:
     ours, theirs = (np.median(_errors_of(broad["whole"][way])) for way in (_DECISION, "vqf"))
     kept = "yes" if ours <= theirs else "**no**"
     return f"The decision must be at or below vqf on the whole trial: {kept}."
 
 
-def _errors_of(rows: Mapping) -> list[float]:
+def _errors_of(rows: Mapping[str, Any]) -> list[float]:
     return [x for row in rows.values() for x in row["rms_mdps"]]

@@ -3,9 +3,12 @@
 zerorate bench own-axes --data FOLDER [FOLDER ...] --out docs/own-axes.md
 """
 
+from __future__ import annotations
+
 from array import array
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
+from typing import Any
 from zlib import crc32
 
 import numpy as np
@@ -31,9 +34,9 @@ _WRONG, _SIGMAS = 0.002, 3.0
 _STATES = range(3, 12)
 
 
-def run(devices: int, data: Sequence[Path], advance: Callable[[float], None]) -> dict:
+def run(devices: int, data: Sequence[Path], advance: Callable[[float], None]) -> dict[str, Any]:
     """Rows of `devices` in each world, with errors and without, and of each trial of BROAD."""
-    found: dict = {"devices": devices, "simulated": {}}
+    found: dict[str, Any] = {"devices": devices, "simulated": {}}
     for world in WORLDS:
         for off in (True, False):
             rows = [one_device(Case(world, i, off)) for i in range(devices)]
@@ -80,7 +83,7 @@ def entries(recording: Recording) -> tuple[Array, Array]:
     return mean, sigma
 
 
-def _number(state, at: int) -> float:
+def _number(state: array[int], at: int) -> float:
     unpack(state, MOTION.T, at)
     return float(np.ldexp(state[MOTION.T], state[MOTION.T + 1]))
 
@@ -107,7 +110,7 @@ def _on_broad(folders: Sequence[Path]) -> dict[str, list[float]]:
     return found
 
 
-def in_markdown(found: dict) -> str:
+def in_markdown(found: dict[str, Any]) -> str:
     """The page."""
     heads = ["ten minutes of", "left, %", "worst, %", "within two sigma", "wrong", "heading, deg"]
     trial = ["trial", "half", "by its first half", "all", "by another trial", "by the worst trial"]
@@ -121,7 +124,7 @@ def in_markdown(found: dict) -> str:
     )
 
 
-def _row(world: str, rows: list[dict]) -> list[str]:
+def _row(world: str, rows: list[dict[str, Any]]) -> list[str]:
     left, within, wrong, before, after = (np.array([r[k] for r in rows]) for k in rows[0])
     return [
         *(world, f"{100 * np.median(left):.2f}", f"{100 * left.max():.2f}"),

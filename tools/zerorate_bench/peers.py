@@ -48,10 +48,11 @@ _MOTION_WORDS = MOTION.MOTION_BIAS_Q8, MOTION.MOTION_QUALITY_Q8
 _GRAVITY_WORDS = GRAVITY.GRAVITY_BIAS_Q8, GRAVITY.GRAVITY_QUALITY_Q8
 
 
-Points = Callable[[NDArray, NDArray], tuple[NDArray, NDArray]]
+Array = NDArray[np.float64]
+Points = Callable[[Array, Array], tuple[Array, Array]]
 
 
-def _fitted_on_the_first(sessions: Sequence[Given], points: Points) -> list[NDArray[np.float64]]:
+def _fitted_on_the_first(sessions: Sequence[Given], points: Points) -> list[Array]:
     first = sessions[0]
     if first.temp_degc is None:
         return [np.full(one.rate_dps.shape, np.nan) for one in sessions]
@@ -61,27 +62,27 @@ def _fitted_on_the_first(sessions: Sequence[Given], points: Points) -> list[NDAr
     curves = [Polynomial.fit(temp - _ABOUT_DEGC, axis, _ORDER) for axis in rates.T]
     low, high = temp.min(), temp.max()
 
-    def of(one: Given) -> NDArray[np.float64]:
+    def of(one: Given) -> Array:
         held = np.clip(np.asarray(one.temp_degc), low, high) - _ABOUT_DEGC
         return np.stack([curve(held) for curve in curves], axis=1)
 
     return [of(one) for one in sessions]
 
 
-def _px4_points(temp: NDArray, rates: NDArray) -> tuple[NDArray, NDArray]:
+def _px4_points(temp: Array, rates: Array) -> tuple[Array, Array]:
     filtered = median_filter(rates, size=(_MEDIAN, 1), mode="nearest")
     edges = np.linspace(temp.min(), temp.max(), _STEPS + 1)
     return _step_means(temp, filtered, np.clip(np.digitize(temp, edges) - 1, 0, _STEPS - 1))
 
 
-def _ardupilot_points(temp: NDArray, rates: NDArray) -> tuple[NDArray, NDArray]:
+def _ardupilot_points(temp: Array, rates: Array) -> tuple[Array, Array]:
     # a step is taken when the temperature reaches it, so only while it rises
     rising = temp >= np.maximum.accumulate(temp) - _STEP_DEGC
     steps = np.floor((temp - temp.min()) / _STEP_DEGC).astype(int)
     return _step_means(temp[rising], rates[rising], steps[rising])
 
 
-def _step_means(temp: NDArray, rates: NDArray, steps: NDArray) -> tuple[NDArray, NDArray]:
+def _step_means(temp: Array, rates: Array, steps: NDArray[np.int64]) -> tuple[Array, Array]:
     counts = np.bincount(steps)
     filled = counts > 0
     means = [np.bincount(steps, values)[filled] / counts[filled] for values in (temp, *rates.T)]
@@ -101,15 +102,15 @@ class Judged(ABC):
     `wrong` what of it had an axis beyond four sigma.
     """
 
-    truth_dps: Sequence[NDArray[np.float64]] | None = None
+    truth_dps: Sequence[Array] | None = None
 
-    def __call__(self, sessions: Sequence[Given]) -> list[NDArray[np.float64]]:
+    def __call__(self, sessions: Sequence[Given]) -> list[Array]:
         self.within: list[bool] = []
         self.learned = self.wrong = 0
         return [self._biases(number, one) for number, one in enumerate(sessions)]
 
     @abstractmethod
-    def _biases(self, number: int, one: Given) -> NDArray[np.float64]:
+    def _biases(self, number: int, one: Given) -> Array:
         """The bias of a session by its number."""
 
 
@@ -122,7 +123,7 @@ class Source(Judged):
     def __init__(self, name: str, **options: object) -> None:
         self.name, self.options = name, options
 
-    def _biases(self, number: int, one: Given) -> NDArray[np.float64]:
+    def _biases(self, number: int, one: Given) -> Array:
         state, settings, (bias_at, sigma_at) = self._made(one)
         lsb = 256 * one.recording.scales.gyro_lsb_per_dps
         self.state = state
@@ -140,7 +141,7 @@ class Source(Judged):
             self._judge(number, int(i), words[i, 0] / lsb, words[i, 1] / lsb)
         return words[:, 0] / lsb
 
-    def _made(self, one: Given) -> tuple:
+    def _made(self, one: Given) -> tuple[NDArray[np.int32], NDArray[np.int32], tuple[int, int]]:
         scales = one.recording.scales
         sensor = (scales.odr_hz, scales.gyro_lsb_per_dps, scales.accel_lsb_per_g)
         if self.name == "in_motion":
@@ -152,9 +153,7 @@ class Source(Judged):
             state, at = gravity_state(settings), _GRAVITY_WORDS
         return np.array(state, np.int32), np.array(settings, np.int32), at
 
-    def _judge(
-        self, number: int, i: int, bias: NDArray[np.float64], sigma: NDArray[np.float64]
-    ) -> None:
+    def _judge(self, number: int, i: int, bias: Array, sigma: Array) -> None:
         self.learned += 1
         if self.truth_dps is None:
             return
@@ -165,12 +164,12 @@ class Source(Judged):
         self.within += inside[known].tolist()
 
 
-def uncorrected(sessions: Sequence[Given]) -> list[NDArray[np.float64]]:
+def uncorrected(sessions: Sequence[Given]) -> list[Array]:
     """No bias at all."""
     return [np.zeros_like(one.rate_dps) for one in sessions]
 
 
-def vqf_clip_raised(sessions: Sequence[Given]) -> list[NDArray[np.float64]]:
+def vqf_clip_raised(sessions: Sequence[Given]) -> list[Array]:
     """As `vqf_default`, with clip 25 dps and initial sigma 8 dps."""
     return [vqf_biases(one, RAISED) for one in sessions]
 
@@ -199,7 +198,7 @@ class Decision(Judged):
             corrector.use_model(effects)
         return outcomes_of(corrector, one, "bias_q8", "quality_q8", "source")
 
-    def _biases(self, number: int, one: Given) -> NDArray[np.float64]:
+    def _biases(self, number: int, one: Given) -> Array:
         bias, sigma, source = self.states(one)
         if self.truth_dps is not None:
             known = source > 0
@@ -210,7 +209,7 @@ class Decision(Judged):
 
 
 def within_two_sigma(
-    sessions: Sequence[Given], truth_dps: NDArray[np.float64], first_s: float
+    sessions: Sequence[Given], truth_dps: Array, first_s: float
 ) -> tuple[float, float]:
     """Shares of the last session's axes and samples whose truth lies within two sigma.
 

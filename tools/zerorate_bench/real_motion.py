@@ -6,6 +6,7 @@ zerorate bench real-motion --data FOLDER [FOLDER ...]
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,12 +53,12 @@ def ways() -> dict[str, Peer]:
     return {OURS: Decision(), "vqf": vqf_default, "imufusion": fusion, NONE: uncorrected}
 
 
-def run(data: Sequence[Path], advance: Callable[[float], None] = lambda n: None) -> dict:
+def run(data: Sequence[Path], advance: Callable[[float], None] = lambda n: None) -> dict[str, Any]:
     """Start -> way -> trial -> errors, mdps, one for each place where it begins; under "optics"
     trial -> how far the bias in motion is from the one at rest by the optics, and its one sigma.
     Raises ZerorateError for a folder without a trial."""
     every = {trial.name: trial for folder in data for trial in trials(folder)}
-    found: dict = {start: {way: {} for way in (OURS, TOLD, *ways())} for start in STARTS}
+    found: dict[str, Any] = {start: {way: {} for way in (OURS, TOLD, *ways())} for start in STARTS}
     found[OPTICS] = {}
     shown = matrices_of(every)
     for name, trial in sorted(every.items()):
@@ -134,7 +135,7 @@ def _end(trial: Trial) -> int:
     return int(np.flatnonzero(trial.moving)[-1]) + 1
 
 
-def in_markdown(found: Mapping) -> str:
+def in_markdown(found: Mapping[str, Any]) -> str:
     """The page: median, mean and worst of each way, then each trial."""
     heads = [f"{start}: {what}" for start in STARTS for what in ("median", "mean", "worst")]
     starts = len(next(iter(found[COLD][OURS].values())))
@@ -148,14 +149,14 @@ def in_markdown(found: Mapping) -> str:
     return "\n".join(parts)
 
 
-def _each(found: Mapping) -> Iterator[list[str]]:
+def _each(found: Mapping[str, Any]) -> Iterator[list[str]]:
     for name, (apart, sigma) in found[OPTICS].items():
         rows = [row[name] for row in found[COLD].values()]
         cells = [f"{number(np.median(row))} ({number(max(row))})" for row in rows]
         yield [name, *cells, f"{number(apart)} +-{number(sigma)}"]
 
 
-def _rows(found: Mapping) -> Iterator[list[str]]:
+def _rows(found: Mapping[str, Any]) -> Iterator[list[str]]:
     none = np.concatenate([*found[COLD][NONE].values()])
     for way in found[FIRST_REST]:
         errors = [np.concatenate([*found[start][way].values()]) for start in STARTS]

@@ -168,7 +168,7 @@ class Judge:
         """Nothing to close."""
 
 
-def run(hours: float = 24, faults: int = 1000, seed: int = 1) -> dict:
+def run(hours: float = 24, faults: int = 1000, seed: int = 1) -> dict[str, Any]:
     """Live through them; what came of it."""
     luck = random.Random(seed)
     clock = FakeClock()
@@ -242,7 +242,7 @@ def _strike(kind: str, luck: random.Random, chip: FakeMPU6050, bus: FakeI2C, dis
         raise Killed
 
 
-def in_markdown(found: dict) -> str:
+def in_markdown(found: dict[str, Any]) -> str:
     """A few lines for a terminal."""
     faults = ", ".join(f"{count} {kind}" for kind, count in sorted(found["faults"].items()))
     return (

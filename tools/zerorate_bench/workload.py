@@ -1,5 +1,7 @@
 """What the cost benchmarks run: one motion-and-rest cycle in the middle of a simulated warm-up."""
 
+from __future__ import annotations
+
 from array import array
 from dataclasses import dataclass
 
@@ -42,5 +44,5 @@ def workload(samples: int = 2 * CYCLE) -> Workload:
     return Workload(rows[:samples], _words(corrector.settings), _words(corrector.state))
 
 
-def _words(values: array) -> NDArray[np.int32]:
+def _words(values: array[int]) -> NDArray[np.int32]:
     return np.array(values, np.int32)

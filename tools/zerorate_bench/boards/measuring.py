@@ -195,7 +195,9 @@ def _nothing(line: str) -> None:
     pass
 
 
-def _measure_rest(pico: EmulatedPico, found: dict[str, Any], advance) -> None:
+def _measure_rest(
+    pico: EmulatedPico, found: dict[str, Any], advance: Callable[[float], None]
+) -> None:
     flashed = flash(pico.port, say=_nothing)
     found["board"], found["flash_bytes"] = str(flashed.facts), flashed.sent_bytes
     found["heap_bytes"] = {}
@@ -206,7 +208,9 @@ def _measure_rest(pico: EmulatedPico, found: dict[str, Any], advance) -> None:
     advance(1)
 
 
-def _measure_all(pico: EmulatedPico, found: dict[str, Any], advance) -> None:
+def _measure_all(
+    pico: EmulatedPico, found: dict[str, Any], advance: Callable[[float], None]
+) -> None:
     for name in CONFIGURATIONS:
         if name not in found["heap_bytes"]:
             found["heap_bytes"][name], _ = heap_and_import(pico, name)

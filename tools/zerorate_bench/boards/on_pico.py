@@ -16,19 +16,20 @@ _FILL = 0x4007000C
 _TAKE = 0x40070010
 
 
-def fill(words):
+def fill(words: "array[int]") -> None:
     mem32[_LENGTH] = 4 * len(words)
     mem32[_FILL] = addressof(words)
 
 
-def give(words):
+def give(words: "array[int]") -> None:
     """Words to the host."""
     mem32[_LENGTH] = 4 * len(words)
     mem32[_TAKE] = addressof(words)
 
 
-def one_by_one(take, count):
+def one_by_one(corrector: Corrector, count: int) -> None:
     """Each sample in a call: its rates to the host."""
+    take = corrector.update
     dt_us = array("i", [0])
     sample = array("i", [0] * 7)
     for _ in range(count):
@@ -41,7 +42,7 @@ def one_by_one(take, count):
         give(sample)
 
 
-def by_kernel(corrector, count):
+def by_kernel(corrector: Corrector, count: int) -> None:
     """As one_by_one, but without the object: what the kernels cost, called as it calls them."""
     from zerorate.native.rest import step
 
@@ -58,8 +59,11 @@ def by_kernel(corrector, count):
         give(sample)
 
 
-def by_bursts(take, count, at_once):
+def by_bursts(corrector: Corrector, count: int, at_once: int) -> None:
     """at_once samples in a call: their frames to the host."""
+    from zerorate.bursts import Bursts
+
+    take = Bursts(corrector).update
     frames = array("i", [0] * (8 * at_once))
     for _ in range(count // at_once):
         fill(frames)
@@ -69,7 +73,9 @@ def by_bursts(take, count, at_once):
         give(frames)
 
 
-def run(options, sensor, count, at_once, model):
+def run(
+    options: dict[str, object], sensor: tuple[float, ...], count: int, at_once: int, model: bytes
+) -> None:
     """at_once: samples a call, 0 for the kernels without the object."""
     for _ in range(3):  # what the marks themselves cost
         mem32[_MARK] = 1
@@ -85,11 +91,9 @@ def run(options, sensor, count, at_once, model):
         corrector.use_model(effects)
     gc.collect()
     if at_once > 1:
-        from zerorate.bursts import Bursts
-
-        by_bursts(Bursts(corrector).update, count, at_once)
+        by_bursts(corrector, count, at_once)
     elif at_once:
-        one_by_one(corrector.update, count)
+        one_by_one(corrector, count)
     else:
         by_kernel(corrector, count)
     c = corrector

@@ -19,6 +19,7 @@ import subprocess
 import threading
 import tty
 from array import array
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from importlib.resources import files
 from pathlib import Path
@@ -99,7 +100,9 @@ class EmulatedPico:
     symbolic link to the port.
     """
 
-    def __init__(self, parts: PicoParts, bias_lsb=(40, -25, 10), link: Path | None = None) -> None:
+    def __init__(
+        self, parts: PicoParts, bias_lsb: Sequence[int] = (40, -25, 10), link: Path | None = None
+    ) -> None:
         self._master, slave = pty.openpty()
         tty.setraw(slave)
         self.port = os.ttyname(slave)
@@ -115,7 +118,9 @@ class EmulatedPico:
         for work in (self._to_board, self._from_board):
             threading.Thread(target=work, daemon=True).start()
 
-    def _started(self, parts: PicoParts, bias: list[int], control: socket.socket):
+    def _started(
+        self, parts: PicoParts, bias: list[int], control: socket.socket
+    ) -> subprocess.Popen[bytes]:
         options = {
             "rp2040js": str(parts.package / "dist" / "esm" / "index.js"),
             "bootrom": str(parts.bootrom),
@@ -137,7 +142,7 @@ class EmulatedPico:
     def __enter__(self) -> EmulatedPico:
         return self
 
-    def __exit__(self, *exc) -> None:
+    def __exit__(self, *exc: object) -> None:
         self.close()
 
     def close(self) -> None:
@@ -155,7 +160,7 @@ class EmulatedPico:
         """Let it go on."""
         self._process.send_signal(signal.SIGCONT)
 
-    def ask(self, command: str, **arguments):
+    def ask(self, command: str, **arguments: Any) -> Any:
         """What the emulator answers to a command of pico.mjs."""
         self._control.write(json.dumps({"do": command, **arguments}) + "\n")
         self._control.flush()
@@ -174,6 +179,7 @@ class EmulatedPico:
         return base64.b64decode(self.ask("pile"))
 
     def _to_board(self) -> None:
+        assert self._process.stdin is not None
         while not self._closed.is_set():
             try:
                 data = os.read(self._master, 4096)
@@ -184,6 +190,7 @@ class EmulatedPico:
                 self._closed.wait(0.02)  # time.sleep may be a test's own clock
 
     def _from_board(self) -> None:
+        assert self._process.stdout is not None
         poll = select.poll()
         poll.register(self._master, select.POLLHUP)
         while data := self._process.stdout.read(4096):

@@ -2,6 +2,9 @@
 
 import json
 import struct
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from mcap.writer import Writer
@@ -10,13 +13,20 @@ from rosbags.rosbag2 import StoragePlugin
 from rosbags.rosbag2 import Writer as Writer2
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
+from .world import World
 
-def ulog(path, topics):
-    """A PX4 ULog (PX4 user guide, ULog file format): {topic: {field: (type, values)}}."""
+#: {topic: {field: (type, values)}}.
+Topics = dict[str, dict[str, tuple[str, np.ndarray]]]
+Rows = Sequence[tuple[float, ...]]
+_Reading = tuple[int, Sequence[float], Sequence[float], float]
+
+
+def ulog(path: Path, topics: Topics) -> None:
+    """A PX4 ULog (PX4 user guide, ULog file format)."""
     types = {"uint64_t": "<u8", "float": "<f4", "float[3]": "<f4"}
     out = [b"ULog\x01\x12\x35\x01" + struct.pack("<Q", 0)]
 
-    def message(kind, body):
+    def message(kind: str, body: bytes) -> None:
         out.append(struct.pack("<HB", len(body), ord(kind)) + body)
 
     message("B", bytes(40))
@@ -32,21 +42,23 @@ def ulog(path, topics):
     path.write_bytes(b"".join(out))
 
 
-def dataflash_of_2015(path, messages):
+def dataflash_of_2015(path: Path, messages: Mapping[str, Rows]) -> None:
     """An ArduPilot log as it was in 2015: {IMU, IMU2, IMU3: rows of TimeMS, gyro, accel, T}."""
     _dataflash(path, "TimeMS,GyrX,GyrY,GyrZ,AccX,AccY,AccZ,Temp", "Ifffffff", "<I7f", messages)
 
 
-def dataflash(path, rows):
+def dataflash(path: Path, rows: Rows) -> None:
     """An ArduPilot DataFlash log: FMT messages, then IMU rows (TimeUS, I, gyro, accel, T)."""
     labels = "TimeUS,I,GyrX,GyrY,GyrZ,AccX,AccY,AccZ,T"
     _dataflash(path, labels, "QBfffffff", "<QB7f", {"IMU": rows})
 
 
-def _dataflash(path, labels, letters, body, messages):
+def _dataflash(
+    path: Path, labels: str, letters: str, body: str, messages: Mapping[str, Rows]
+) -> None:
     head = b"\xa3\x95"
 
-    def described(kind, length, name, letters, labels):
+    def described(kind: int, length: int, name: str, letters: str, labels: str) -> bytes:
         return head + struct.pack(
             "<BBB4s16s64s", 128, kind, length, name.encode(), letters.encode(), labels.encode()
         )
@@ -58,7 +70,9 @@ def _dataflash(path, labels, letters, body, messages):
     path.write_bytes(b"".join(out))
 
 
-def vectornav_line(rates, accel=(0.0, 0.0, -9.8), temp=26.8):
+def vectornav_line(
+    rates: Sequence[float], accel: Sequence[float] = (0.0, 0.0, -9.8), temp: float = 26.8
+) -> str:
     """One $VNIMU line with its checksum."""
     mag = "-00.2382,+00.7281,+00.2867"
     acc = ",".join(f"{v:+07.3f}" for v in accel)
@@ -70,7 +84,13 @@ def vectornav_line(rates, accel=(0.0, 0.0, -9.8), temp=26.8):
     return f"${text}*{checksum:02X}"
 
 
-def bag(folder, kind, imu=True, world=None, torn=()):
+def bag(
+    folder: Path,
+    kind: str,
+    imu: bool = True,
+    world: World | None = None,
+    torn: Collection[int] = (),
+) -> Path:
     """Three seconds of sensor_msgs/Imu at 200 Hz, and of Temperature at 1 Hz, or a world; where it
     is. kind: ros1, ros2 (a folder), db3 (its file alone), mcap, mcap-json. torn: numbers of JSON
     messages that are cut off.
@@ -93,7 +113,7 @@ def bag(folder, kind, imu=True, world=None, torn=()):
     return path if kind == "ros2" else next(path.glob("*.db3" if kind == "db3" else "*.mcap"))
 
 
-def bag_of_a_driver(path):
+def bag_of_a_driver(path: Path) -> Path:
     """A bag of ROS 1 whose messages, of a driver's own type, hold an Imu each."""
     store = get_typestore(Stores.ROS1_NOETIC)
     store.register(get_types_from_msg("string raw\nsensor_msgs/Imu imu", "driver/msg/Own"))
@@ -104,7 +124,7 @@ def bag_of_a_driver(path):
     return path
 
 
-def _readings(world):
+def _readings(world: World | None) -> list[_Reading]:
     """(ns, rates, force, degC) of each sample."""
     if world is None:
         return [
@@ -115,10 +135,10 @@ def _readings(world):
     return list(zip(at_ns, world.rad.tolist(), world.mps2.tolist(), world.degc.tolist()))
 
 
-def _messages(store, world=None):
+def _messages(store: Any, world: World | None = None) -> list[tuple[str, int, Any]]:
     types = store.types
 
-    def header(ns):
+    def header(ns: int) -> Any:
         time = types["builtin_interfaces/msg/Time"]
         stamp = time(sec=1_700_000_000 + ns // 10**9, nanosec=ns % 10**9)
         more = {"seq": 0} if "seq" in types["std_msgs/msg/Header"].__dataclass_fields__ else {}
@@ -144,7 +164,12 @@ def _messages(store, world=None):
     return out
 
 
-def _write(writer, messages, stores, store=None):
+def _write(
+    writer: Writer1 | Writer2,
+    messages: list[tuple[str, int, Any]],
+    stores: Stores,
+    store: Any = None,
+) -> None:
     store, connections = store or get_typestore(stores), {}
     encode = store.serialize_ros1 if stores is Stores.ROS1_NOETIC else store.serialize_cdr
     for topic, ns, message in messages:
@@ -153,7 +178,7 @@ def _write(writer, messages, stores, store=None):
         writer.write(connections[topic], ns, encode(message, message.__msgtype__))
 
 
-def _mcap_of_json(path, messages, torn):
+def _mcap_of_json(path: Path, messages: list[tuple[str, int, Any]], torn: Collection[int]) -> Path:
     with open(path, "wb") as file:
         writer = Writer(file, chunk_size=1 << 16)
         writer.start()
@@ -169,15 +194,15 @@ def _mcap_of_json(path, messages, torn):
     return path
 
 
-def _as_json(part):
+def _as_json(part: Any) -> Any:
     return part.tolist() if isinstance(part, np.ndarray) else vars(part)
 
 
-def blackbox(path, rows):
+def blackbox(path: Path, rows: Iterable[tuple[int, ...]]) -> None:
     """A Betaflight log of intra frames: time, three gyro counts of 1 dps, three of 1/2048 g."""
     names = ["loopIteration", "time", *(f"gyroADC[{i}]" for i in range(3))]
     names += [f"accSmooth[{i}]" for i in range(3)]
-    fields: dict[str, list] = {
+    fields: dict[str, list[str] | list[int]] = {
         "name": list(names),
         "signed": [0, 0, *[1] * 6],
         "predictor": [0] * 8,
@@ -194,7 +219,7 @@ def blackbox(path, rows):
     path.write_bytes(b"".join(out) + b"E\xffEnd of log\x00")
 
 
-def _varint(value):
+def _varint(value: int) -> bytes:
     out = bytearray()
     while value > 127:
         out.append(value & 127 | 128)

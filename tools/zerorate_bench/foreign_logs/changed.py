@@ -14,7 +14,7 @@ _SIX = [*RATES, *FORCES]
 _SECOND = "%Y-%m-%d %H:%M:%S"
 
 
-def _in_turn(world: World, of: list) -> pd.DataFrame:
+def _in_turn(world: World, of: tuple[int, float, float, int]) -> pd.DataFrame:
     """Rows of several devices, each with its own bias and mounting, without a word of whose."""
     devices, late_s, apart_s, block = of
     rng, one = np.random.default_rng(3), []
@@ -30,15 +30,15 @@ def _in_turn(world: World, of: list) -> pd.DataFrame:
 
 
 # what, how many, how much later each is (s), the second's clock (s), rows of each in turn
-_DEVICES: tuple = (
-    ("two devices in turn, without a word of whose: at the same times", 2, 0.0, 0.0, 1),
-    ("two devices in turn: half a period apart", 2, 0.005, 0.0, 1),
-    ("two devices in turn: each has its own clock, so times go back and forth", 2, 0.0, 0.237, 1),
-    ("two devices in turn: one was switched on an hour before", 2, 0.0, 3600.0, 1),
-    ("three devices in turn", 3, 0.002, 0.0, 1),
-    ("two devices: ten rows of one, ten of the other, at the same times", 2, 0.0, 0.0, 10),
+_DEVICES: tuple[tuple[str, tuple[int, float, float, int]], ...] = (
+    ("two devices in turn, without a word of whose: at the same times", (2, 0.0, 0.0, 1)),
+    ("two devices in turn: half a period apart", (2, 0.005, 0.0, 1)),
+    ("two devices in turn: each has its own clock, so times go back and forth", (2, 0.0, 0.237, 1)),
+    ("two devices in turn: one was switched on an hour before", (2, 0.0, 3600.0, 1)),
+    ("three devices in turn", (3, 0.002, 0.0, 1)),
+    ("two devices: ten rows of one, ten of the other, at the same times", (2, 0.0, 0.0, 10)),
 )
-for what, *of in _DEVICES:
+for what, of in _DEVICES:
     log.csv(what, partial(_in_turn, of=of), least=2.0)
 
 log.csv("dates of whole seconds: a hundred rows share each",

@@ -15,7 +15,7 @@ def _us(world: World) -> np.ndarray:
     return world.whole(1e6, _AT_US)
 
 
-def _topics(world: World) -> dict:
+def _topics(world: World) -> binary.Topics:
     """Of a ULog: a topic a sensor."""
     stamps = {"timestamp": ("uint64_t", _us(world))}
     rates = {a: ("float", world.rad[:, i]) for i, a in enumerate("xyz")}
@@ -24,7 +24,7 @@ def _topics(world: World) -> dict:
     return {"sensor_gyro": stamps | rates | warm, "sensor_accel": stamps | force}
 
 
-def _imu_rows(world: World) -> list[tuple]:
+def _imu_rows(world: World) -> list[tuple[float, ...]]:
     """Two instances that take turns, the second with another bias."""
     columns = (_us(world), world.rad, world.mps2, world.degc)
     return [
@@ -34,7 +34,7 @@ def _imu_rows(world: World) -> list[tuple]:
     ]
 
 
-def _imu_rows_of_2015(world: World) -> list[tuple]:
+def _imu_rows_of_2015(world: World) -> list[tuple[float, ...]]:
     columns = (_us(world) // 1000, world.rad, world.mps2, world.degc)
     return [(int(t), *r, *f, w) for t, r, f, w in zip(*columns)]
 
@@ -50,7 +50,7 @@ def _counts(world: World) -> tuple[np.ndarray, np.ndarray]:
     return world.counts(1, 2048)
 
 
-def _blackbox_rows(world: World) -> list[tuple]:
+def _blackbox_rows(world: World) -> list[tuple[int, ...]]:
     counts, force = _counts(world)
     return [(t, *c, *f) for t, c, f in zip(*(of.tolist() for of in (_us(world), counts, force)))]
 

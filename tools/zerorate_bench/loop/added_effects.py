@@ -3,8 +3,9 @@
 A size is of what survives a refit of offset, T and T^2: what those take is no news to any model.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
+from typing import Any
 
 import numpy as np
 from zerorate_tools.loop.read.sessions import Session, block_basis
@@ -21,8 +22,13 @@ CURVES = ("power of 1.5 above a threshold", "sigmoid", "half a sine", "notch")
 #: Deviation of the temperature before a power-on from its first one.
 KEPT_OFF_DEGC = 3.0
 
+#: (n,) what an effect adds to the blocks of a session, of any size.
+Shape = Callable[[Session], np.ndarray]
 
-def _survivor_rms(parts: list[np.ndarray], sessions: list[Session], powers=(1, 2)) -> float:
+
+def _survivor_rms(
+    parts: list[np.ndarray], sessions: list[Session], powers: Sequence[int] = (1, 2)
+) -> float:
     """RMS of what offset per session and powers of T cannot take of an effect given as (n,) a
     session.
     """
@@ -35,7 +41,14 @@ def _survivor_rms(parts: list[np.ndarray], sessions: list[Session], powers=(1, 2
     return float(np.std(y - x @ np.linalg.lstsq(x, y, rcond=None)[0]))
 
 
-def add_parts(rng, sessions, parts, size_dps, powers=(1, 2), whole=None):
+def add_parts(
+    rng: np.random.Generator,
+    sessions: list[Session],
+    parts: list[np.ndarray],
+    size_dps: float | np.ndarray,
+    powers: Sequence[int] = (1, 2),
+    whole: list[np.ndarray] | None = None,
+) -> None:
     """whole: what is so large of which these parts are left."""
     direction = rng.normal(size=3)
     direction *= np.sqrt(3) / np.linalg.norm(direction)
@@ -44,7 +57,9 @@ def add_parts(rng, sessions, parts, size_dps, powers=(1, 2), whole=None):
         s.rate_dps += np.outer(p, direction * size_dps) / scale
 
 
-def add_effect(rng, sessions, name, size_dps):
+def add_effect(
+    rng: np.random.Generator, sessions: list[Session], name: str, size_dps: float | np.ndarray
+) -> None:
     """Add one effect by its name to all sessions, with parameters drawn off the loop's grids."""
     if name == "step":
         s = sessions[int(rng.integers(0, len(sessions) - 1))]
@@ -62,7 +77,9 @@ def add_effect(rng, sessions, name, size_dps):
     add_parts(rng, sessions, parts, size_dps, powers, whole)
 
 
-def _add_matrix(rng, sessions, name, size_dps):
+def _add_matrix(
+    rng: np.random.Generator, sessions: list[Session], name: str, size_dps: float | np.ndarray
+) -> None:
     matrix = rng.normal(size=(3, 3))
     prefix = "acc" if "acceleration" in name else "rate"
     power = 2 if name == "squared-acceleration" else 1
@@ -80,7 +97,7 @@ def _add_matrix(rng, sessions, name, size_dps):
         s.rate_dps += (v @ matrix.T) * size_dps / scale
 
 
-def _many_plays(rng):
+def _many_plays(rng: np.random.Generator) -> Callable[..., np.ndarray]:
     """A sum of play operators and their squares; where each stands at a power-on nobody knows: the
     device was kept some degrees off before."""
     radii = np.sort(rng.uniform(0.5, 8.0, int(rng.integers(3, 7))))
@@ -101,11 +118,11 @@ def _many_plays(rng):
     return shape
 
 
-def _curve(of) -> Callable[[Session], np.ndarray]:
+def _curve(of: Callable[[np.ndarray], np.ndarray]) -> Shape:
     return lambda s: s.block_mean(of(s.sources[CURVE_OF]))
 
 
-def _curves(rng, sessions) -> dict:
+def _curves(rng: np.random.Generator, sessions: list[Session]) -> dict[str, Shape]:
     """Curves of a channel that no catalogue lists, anywhere within what was recorded."""
     seen = np.concatenate([s.sources[CURVE_OF] for s in sessions])
     lo, span = seen.min(), np.ptp(seen)
@@ -119,11 +136,11 @@ def _curves(rng, sessions) -> dict:
     return {name: _curve(form) for name, form in zip(CURVES, forms)}
 
 
-def _term(**fields):
+def _term(**fields: Any) -> Shape:
     return lambda s: block_basis(Term(**fields), s)
 
 
-def _shapes_of(rng: np.random.Generator, sessions: list[Session]) -> dict:
+def _shapes_of(rng: np.random.Generator, sessions: list[Session]) -> dict[str, Shape]:
     """Name -> function of a session giving the (n,) shape, with parameters drawn off the loop's
     grids.
     """

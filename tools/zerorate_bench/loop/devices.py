@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
+from typing import Any
 
 import numpy as np
 
@@ -172,12 +173,12 @@ def _pairs(seeds: int) -> Iterator[Device]:
             yield Device(TWO, _SEEDS["pair"] + 1000 * k + i, tuple((e, 2.0) for e in pair))
 
 
-def describe(seed: int) -> tuple[dict, str, int]:
+def describe(seed: int) -> tuple[dict[str, Any], str, int]:
     """(description, kind, recordings that are closed); one more power-on follows them."""
     rng = np.random.default_rng(7_000_000 + seed)
     kind, recordings = KINDS[seed % len(KINDS)], 1 if rng.random() < 0.6 else 2
     path = _PATHS[str(rng.choice(list(_PATHS)))]
-    motion: list[dict] = [_REST, _HAND] if rng.random() < 0.5 else []
+    motion: list[dict[str, Any]] = [_REST, _HAND] if rng.random() < 0.5 else []
     if kind == "shock" or (kind in _JUMP_FLOORS and rng.random() < 0.5):
         motion = [{"kind": "rest", "s": [500, 900]}, _SHOCK, *motion]
     size = float(np.exp(rng.uniform(np.log(2.0), np.log(20.0)))) * _FLOOR_DPS
@@ -207,12 +208,14 @@ def describe(seed: int) -> tuple[dict, str, int]:
     return described, kind, recordings
 
 
-def _effects_single_devices(rng, kind: str, size_dps: float, recordings: int) -> list[dict]:
+def _effects_single_devices(
+    rng: np.random.Generator, kind: str, size_dps: float, recordings: int
+) -> list[dict[str, Any]]:
     if kind in _JUMP_FLOORS:
         dps = [float(_JUMP_FLOORS[kind] * _FLOOR_DPS * s) for s in rng.choice([-1, 1], 3)]
         own = int(rng.integers(1, recordings + 1))
         return [{"kind": "step", "at_s": rng.uniform(700, 2600), "dps": dps, "session": own}]
-    form: dict[str, dict] = {
+    form: dict[str, dict[str, Any]] = {
         "hysteresis": {
             "kind": "prandtl-ishlinskii",
             "widths_degc": [float(w) for w in rng.uniform(2.0, 20.0, 3)],

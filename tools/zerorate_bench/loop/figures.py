@@ -1,10 +1,10 @@
 """The figures that the loop must reach, each with its limit, its interval and whether it does."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
 from itertools import pairwise
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from scipy.stats import binomtest
@@ -31,6 +31,7 @@ from .files import ROWS
 from .run_trial import Outcome
 
 Looked = TypeVar("Looked")
+Rows = dict[str, list[Outcome]]
 #: How the names of figures begin that are of all devices together.
 _OF_ALL = ("2x, named", "2x-5x all", "groups told", "held-out error")
 #: Ends of the probabilities that are counted together.
@@ -61,7 +62,7 @@ class Figure:
             return None
         return self.value <= self.limit if self.at_most else self.value >= self.limit
 
-    def to_dict(self) -> dict:
+    def to_dict(self) -> dict[str, Any]:
         """Plain values with the verdict."""
         return {**asdict(self), "met": self.met}
 
@@ -89,7 +90,7 @@ def figures(outcomes: list[Outcome], whole: bool = True) -> list[Figure]:
 
 
 def _figures(outcomes: list[Outcome]) -> Iterator[Figure]:
-    rows: dict[str, list[Outcome]] = {}
+    rows: Rows = {}
     for o in outcomes:
         rows.setdefault(o.device.row, []).append(o)
     yield from _where_nothing_is(rows)
@@ -106,7 +107,7 @@ def _figures(outcomes: list[Outcome]) -> Iterator[Figure]:
     yield from _made_worse(outcomes)
 
 
-def _where_nothing_is(rows):
+def _where_nothing_is(rows: Rows) -> Iterator[Figure]:
     noise = [o for row, group in rows.items() if row.startswith(NULL) for o in group]
     if noise:
         yield share("found in nothing, all kinds", noise, lambda o: bool(o.found), 0.5, True)
@@ -121,7 +122,7 @@ def _where_nothing_is(rows):
         yield share("found, or found and withdrawn, in nothing", noise, _found_at_first, None)
 
 
-def _corners(group):
+def _corners(group: list[Outcome]) -> Iterator[Figure]:
     if group:
         yield share(f"step invented at {CORNERS}", group, lambda o: o.events > 0, 1.0, True)
 
@@ -137,7 +138,7 @@ def _by_effect(group: list[Outcome]) -> dict[str, list[Outcome]]:
     return out
 
 
-def _catalogue(rows):
+def _catalogue(rows: Rows) -> Iterator[Figure]:
     twice = _by_effect(rows.get("2x", []))
     for effect in (*CATALOGUE, KINK):
         if effect in twice:
@@ -155,7 +156,7 @@ def _named(o: Outcome) -> bool:
     return all(o.named(e) for e, _ in o.device.effects)
 
 
-def _told(rows):
+def _told(rows: Rows) -> Iterator[Figure]:
     """Groups by the chance that they were told with: how many are right, and how far that is from
     what was told."""
     names = {*CATALOGUE, KINK}
@@ -177,14 +178,14 @@ def _told(rows):
             yield Figure(f"{name}: off", off, 10.0, True, len(own), unit="points")
 
 
-def _outside(group):
+def _outside(group: list[Outcome]) -> Iterator[Figure]:
     for effect, some in _by_effect(group).items():
         channels = OUTSIDE[effect]
         name = f"outside, 2x {effect}: tied to {' and '.join(channels)}"
         yield share(name, some, partial(Outcome.tied_to, channels=channels), 90.0)
 
 
-def _curves(group):
+def _curves(group: list[Outcome]) -> Iterator[Figure]:
     tied = partial(Outcome.tied_to, channels=(CURVE_OF,))
     if group:
         yield share(f"{CURVE}: tied to it", group, tied, 95.0)
@@ -196,7 +197,7 @@ def _curves(group):
             yield _times(f"{name}: error after, mean", after.mean(), 1.2, len(after))
 
 
-def _unrecorded(rows):
+def _unrecorded(rows: Rows) -> Iterator[Figure]:
     for n, limit in ((4, 10.0), (7, 2.0)):
         row = f"{HIDDEN}, {n} sessions"
         if row in rows:
@@ -206,7 +207,7 @@ def _unrecorded(rows):
             yield share(f"{row}: said to be left", group, lambda o: o.excess, None)
 
 
-def _from_files(rows):
+def _from_files(rows: Rows) -> Iterator[Figure]:
     for row, of in ROWS.items():
         group, effect = rows.get(row, []), of.named
         if group and effect:
@@ -220,7 +221,7 @@ def _from_files(rows):
             yield share(f"{row}: confirmed", group, lambda o: o.confirmed, 0.5, at_most=True)
 
 
-def _removed(rows):
+def _removed(rows: Rows) -> Iterator[Figure]:
     """Mean of the error after over that of the noise alone, by effect and in all: every size counts
     alike, however many devices have it."""
     for effect in (*CATALOGUE, KINK):
@@ -236,7 +237,7 @@ def _removed(rows):
         yield _times("2x-5x all fourteen: error after, mean", mean, 1.1, number)
 
 
-def _after(rows, effects) -> list[np.ndarray]:
+def _after(rows: Rows, effects: Sequence[str]) -> list[np.ndarray]:
     """The errors after of devices with one of the effects, of each size that there is."""
     groups = [rows.get(f"{size:g}x", []) for size in SIZES]
     each = [[o.after for o in group if o.device.effects[0][0] in effects] for group in groups]
@@ -248,16 +249,16 @@ def rms(values: np.ndarray) -> float:
     return float(np.sqrt(np.mean(np.square(values))))
 
 
-def _times(name, value, limit, devices):
+def _times(name: str, value: float, limit: float | None, devices: int) -> Figure:
     return Figure(name, float(value), limit, True, devices, unit="x noise")
 
 
-def _pairs(group):
+def _pairs(group: list[Outcome]) -> Iterator[Figure]:
     for effects, some in _by_effect(group).items():
         yield share(f"2x {effects}: both named", some, _named, 90.0)
 
 
-def _many_widths(rows):
+def _many_widths(rows: Rows) -> Iterator[Figure]:
     """Hysteresis of Prandtl-Ishlinskii form: of all numbers of power-ons, and of each."""
     each = {row: group for row, group in rows.items() if row.startswith(MANY_WIDTHS)}
     every = [o for group in each.values() for o in group]
@@ -268,7 +269,9 @@ def _many_widths(rows):
         yield from _of_many_widths(f", {row.split()[-1]} power-ons", group)
 
 
-def _of_many_widths(which, group, found=None, after=None):
+def _of_many_widths(
+    which: str, group: list[Outcome], found: float | None = None, after: float | None = None
+) -> Iterator[Figure]:
     name = f"2x hysteresis of many widths{which}"
     if group:
         named = partial(Outcome.named, effect="thermal-hysteresis")
@@ -279,7 +282,7 @@ def _of_many_widths(which, group, found=None, after=None):
         yield _times(f"{name}: were nothing withdrawn", errors[1], None, len(group))
 
 
-def _made_worse(outcomes):
+def _made_worse(outcomes: list[Outcome]) -> Iterator[Figure]:
     blocks = [o for o in outcomes if o.device.row not in (*ROWS, TOLD, CORNERS)]
     with_recorded = [o for o in blocks if not o.device.row.startswith(HIDDEN)]
     name = "held-out error made worse by more than 2 %"

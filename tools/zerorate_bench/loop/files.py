@@ -13,12 +13,13 @@ from typing import Any
 import numpy as np
 from zerorate_tools.closing import load
 from zerorate_tools.loop.report.report import report
-from zerorate_tools.loop.verify.analysis import model_of
+from zerorate_tools.loop.verify.analysis import Analysis, model_of
 from zerorate_tools.loop.verify.firmware import Firmware
 from zerorate_tools.recordings import open_recording, write_recording
 from zerorate_tools.recordings.recording import ATTITUDE
 from zerorate_tools.replay.samples import frames_in_batches
 from zerorate_tools.simulate import simulate_sessions
+from zerorate_tools.simulate.device import Truth
 
 from .devices import Device
 from .run_trial import Outcome
@@ -35,11 +36,11 @@ _PATH = [
 _POSE = {"kind": "pose", "s": 3}
 
 
-def _rest(*seconds: float) -> dict:
+def _rest(*seconds: float) -> dict[str, Any]:
     return {"kind": "rest", "s": [*seconds]}
 
 
-def _on_each_face(*bouts: dict) -> list[dict]:
+def _on_each_face(*bouts: dict[str, Any]) -> list[dict[str, Any]]:
     """The bouts once for each face, to which a pose among them turns."""
     return [b | {"face": face} if b is _POSE else b for face in _FACES for b in bouts]
 
@@ -67,13 +68,13 @@ class Row:
     attitude is recorded beside it."""
 
     named: str = ""
-    motion: Sequence[dict] = ()
-    effect: dict | None = None
+    motion: Sequence[dict[str, Any]] = ()
+    effect: dict[str, Any] | None = None
     attitude: bool = False
     latitude_deg: float | None = None
 
 
-def _twice_the_floor(**effect: Any) -> dict:
+def _twice_the_floor(**effect: Any) -> dict[str, Any]:
     return {**effect, "rms_dps": 2 * _FLOOR_DPS}
 
 
@@ -114,7 +115,7 @@ def file_devices(seeds: int) -> list[Device]:
     return [Device(row, 900_000 + i) for row in ROWS for i in range(seeds)]
 
 
-def description(row: str) -> dict:
+def description(row: str) -> dict[str, Any]:
     """Of a row's device: four sessions of fifty minutes at 10 Hz, an MPU-6050."""
     of = ROWS[row]
     more: dict[str, Any] = {} if of.effect is None else {"effect": [of.effect]}
@@ -163,7 +164,7 @@ def look_at_files(device: Device) -> Outcome:
     )
 
 
-def _in_motion_mdps(analysis, path: Path, truth) -> float:
+def _in_motion_mdps(analysis: Analysis, path: Path, truth: Truth) -> float:
     """RMS over the moving samples and the axes of the firmware's error, learning as it goes."""
     recording = open_recording(path)
     scales = recording.scales
@@ -175,7 +176,7 @@ def _in_motion_mdps(analysis, path: Path, truth) -> float:
     return float(1e3 * np.sqrt((error[counts] ** 2).mean()))
 
 
-def _written(device: Device, folder: Path) -> Iterator[tuple[Path, Any]]:
+def _written(device: Device, folder: Path) -> Iterator[tuple[Path, Truth]]:
     """(file, truth) of every session."""
     made = simulate_sessions(description(device.row), seed=device.seed)
     for i, (recording, truth) in enumerate(made):

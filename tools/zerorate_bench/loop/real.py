@@ -6,6 +6,7 @@ import tempfile
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,7 @@ from zerorate_tools.loop.fit.regression import predicted
 from zerorate_tools.loop.fit.single import PiecesByLine, held
 from zerorate_tools.loop.report.report import report
 from zerorate_tools.loop.search.catalogue import ranges
+from zerorate_tools.loop.verify.analysis import Analysis
 from zerorate_tools.loop.verify.judge import rms_dps, scored
 from zerorate_tools.loop.verify.run_kernels import run_and_prune
 from zerorate_tools.model.term import Term
@@ -30,7 +32,7 @@ _FAR_DEGC = 1e4
 _POWERS, _MOST_BENDS = 7, 12
 
 
-def run(data: Path | None) -> dict[str, dict]:
+def run(data: Path | None) -> dict[str, dict[str, Any]]:
     """Name -> figures in mdps (RMS over the axes, held out) and what was found, of every recording
     alone and of those of one device together.
 
@@ -47,7 +49,7 @@ def run(data: Path | None) -> dict[str, dict]:
     return rows
 
 
-def _closed(paths: list[Path], scratch: Path) -> dict:
+def _closed(paths: list[Path], scratch: Path) -> dict[str, Any]:
     logs = [scratch / f"{path.parent.name}-{path.name.split('.')[0]}.parquet" for path in paths]
     for path, log in zip(paths, logs):
         import_recording(path, log, **told_of(path))
@@ -56,7 +58,7 @@ def _closed(paths: list[Path], scratch: Path) -> dict:
     return _row(analysis, result)
 
 
-def _row(analysis, result: dict) -> dict:
+def _row(analysis: Analysis, result: dict[str, Any]) -> dict[str, Any]:
     judgement, rival = analysis.judgement, cubic_left(analysis)
     best = best_curve_rms_dps(analysis)
     left = rms_mdps(np.vstack(judgement.residual_after))
@@ -80,13 +82,13 @@ def _row(analysis, result: dict) -> dict:
     }
 
 
-def _noise(analysis) -> float:
+def _noise(analysis: Analysis) -> float:
     """White noise of a block, mdps, by the rates' differences from one block to the next."""
     changes = [np.diff(s.rate_dps[s.available], n=2, axis=0) for s in analysis.holdout]
     return round(float(1e3 * np.sqrt((np.vstack(changes) ** 2).mean() / 6)), 2)
 
 
-def in_markdown(rows: dict[str, dict]) -> str:
+def in_markdown(rows: dict[str, dict[str, Any]]) -> str:
     """The page of `zerorate bench real`: what is missed first, then every recording."""
     worse = [n for n, r in rows.items() if r["after_mdps"] > _MOST_OF_BEFORE * r["before_mdps"]]
     ratios = {n: r["of_cubic"] for n, r in rows.items() if r["of_cubic"] != ""}
@@ -109,7 +111,7 @@ def in_markdown(rows: dict[str, dict]) -> str:
     return "\n".join([*lines, recordings_table(rows)])
 
 
-def recordings_table(rows: dict[str, dict]) -> str:
+def recordings_table(rows: dict[str, dict[str, Any]]) -> str:
     """A row a recording."""
     return table_of([{"recording": name, **row} for name, row in rows.items()])
 
@@ -119,7 +121,7 @@ def _median(values: Iterable[float]) -> float:
     return float(np.median(every)) if every else float("nan")
 
 
-def cubic_left(analysis) -> list[NDArray[np.float64]] | None:
+def cubic_left(analysis: Analysis) -> list[NDArray[np.float64]] | None:
     """(n, 3) dps that a cubic leaves of each held-out part by the same pieces, or fitted on the
     same power-ons: held at the edges of what it was fitted to or not, whichever leaves less; NaN
     where unscored. None without temperature.
@@ -131,7 +133,7 @@ def cubic_left(analysis) -> list[NDArray[np.float64]] | None:
     return min(left, key=lambda parts: float((rms_dps(parts) ** 2).sum()))
 
 
-def best_curve_rms_dps(analysis) -> float | None:
+def best_curve_rms_dps(analysis: Analysis) -> float | None:
     """RMS over the axes of what the best curve leaves: on each axis the best mean, of any weights,
     of two out of polynomials and lines with even bends, held at the edges or not. None without
     temperature.
@@ -147,23 +149,23 @@ def best_curve_rms_dps(analysis) -> float | None:
     return float(np.sqrt(np.mean([_least_mean_square(left[..., a]) for a in range(3)])))
 
 
-def _powers(analysis, most: int) -> list[Term]:
+def _powers(analysis: Analysis, most: int) -> list[Term]:
     line = analysis.selection.line
     free = [replace(t, lo=-_FAR_DEGC, hi=_FAR_DEGC) for t in line]
     return [replace(free[0], power=k) for k in range(1, most + 1)] if free else []
 
 
-def _bent(analysis, slope: Term, bends: int) -> list[Term]:
+def _bent(analysis: Analysis, slope: Term, bends: int) -> list[Term]:
     lo, hi, _ = ranges(analysis.train)["temp"]
     at = np.linspace(lo, hi, bends + 2)[1:-1] - slope.centre
     return [slope, *(replace(slope, knot=float(knot)) for knot in at)]
 
 
-def _at_edges(analysis, terms: list[Term]) -> list[Term]:
+def _at_edges(analysis: Analysis, terms: list[Term]) -> list[Term]:
     return [held(replace(t, lo=-np.inf, hi=np.inf), analysis.train) for t in terms]
 
 
-def _left(analysis, terms: list[Term]) -> list[NDArray[np.float64]]:
+def _left(analysis: Analysis, terms: list[Term]) -> list[NDArray[np.float64]]:
     """(n, 3) of each held-out part, NaN where unscored."""
     if analysis.single:
         return [PiecesByLine(analysis.sessions[0]).residual([], terms)]

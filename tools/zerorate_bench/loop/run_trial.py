@@ -7,6 +7,7 @@ import numpy as np
 from zerorate_tools.loop.fit.line import ordinary
 from zerorate_tools.loop.fit.regression import predicted
 from zerorate_tools.loop.fit.single import PiecesByLine
+from zerorate_tools.loop.read.sessions import Session
 from zerorate_tools.loop.search.select import select, straight_line
 from zerorate_tools.loop.search.steps_first import remove_steps
 from zerorate_tools.loop.verify.judge import residuals, rms_dps, scored
@@ -111,20 +112,20 @@ def _rms(each: np.ndarray) -> float:
     return float(np.sqrt((each**2).mean()))
 
 
-def _left_by_line(sessions) -> np.ndarray:
+def _left_by_line(sessions: list[Session]) -> np.ndarray:
     """(3,) RMS of the last session beside the line over temperature of the others."""
     line = straight_line(sessions[:-1])
     of_line = predicted(line, ordinary(line, sessions[:-1]), sessions[-1])
     return rms_dps([scored(sessions[-1], of_line)[0]])
 
 
-def _noise_rms(session, noise_dps: np.ndarray) -> float:
+def _noise_rms(session: Session, noise_dps: np.ndarray) -> float:
     """Of the blocks scored, over the axes."""
     noise, _ = scored(replace(session, rate_dps=noise_dps), np.zeros(noise_dps.shape))
     return float(np.sqrt(np.nanmean(noise**2)))
 
 
-def judged(device: Device, sessions: list, noise_dps: np.ndarray) -> Outcome:
+def judged(device: Device, sessions: list[Session], noise_dps: np.ndarray) -> Outcome:
     """What the loop says of sessions. noise_dps: (n, 3) of the last one, nothing else in it."""
     sessions = remove_steps(sessions)
     alone = PiecesByLine(sessions[0]) if len(sessions) == 2 else None
@@ -150,7 +151,7 @@ def judged(device: Device, sessions: list, noise_dps: np.ndarray) -> Outcome:
     )
 
 
-def _is_within(sessions: list, name: str) -> bool:
+def _is_within(sessions: list[Session], name: str) -> bool:
     """Whether the last session's blocks stay within those of the others."""
     *some, last = [s.block_mean(s.source(name)) for s in sessions]
     seen = np.concatenate(some)

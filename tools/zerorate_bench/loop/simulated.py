@@ -67,7 +67,9 @@ def temperature_path(rng: np.random.Generator, ticks: int, tick_s: float) -> np.
     return first_order_lag(ambient, 60.0, tick_s) + 8.0 * (1 - np.exp(-at / rng.uniform(300, 600)))
 
 
-def _levels(rng, ticks, tick_s, every_s, low, high):
+def _levels(
+    rng: np.random.Generator, ticks: int, tick_s: float, every_s: float, low: float, high: float
+) -> np.ndarray:
     out, i = np.empty(ticks), 0
     while i < ticks:
         step = max(1, int(rng.exponential(every_s) / tick_s))
@@ -76,7 +78,7 @@ def _levels(rng, ticks, tick_s, every_s, low, high):
     return out
 
 
-def _wander(rng, ticks, tick_s, tau_s):
+def _wander(rng: np.random.Generator, ticks: int, tick_s: float, tau_s: float) -> np.ndarray:
     walk = np.cumsum(rng.normal(size=ticks + 4000))
     slow = first_order_lag(walk - first_order_lag(walk, tau_s, tick_s), tau_s / 3, tick_s)[4000:]
     return (slow - slow.mean()) / (slow.std() + 1e-12)
@@ -200,7 +202,7 @@ def write_blocks(data: Path, folder: Path) -> list[str]:
     return names
 
 
-def cut_into_sessions(name: str, seed: int) -> tuple[list, list]:
+def cut_into_sessions(name: str, seed: int) -> tuple[list[Session], list[np.ndarray]]:
     """Four sessions of a quiet recording with simulated channels that mean nothing, and their
     noise. The cuts, their order, the axes' signs and the direction of time are drawn from the seed.
     """
@@ -261,11 +263,11 @@ def simulate_corners(seed: int) -> Device:
     return Device([session], [made], floor, [kind])
 
 
-def _log_uniform(rng, low: float, high: float) -> float:
+def _log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
     return float(np.exp(rng.uniform(np.log(low), np.log(high))))
 
 
-def _charger(rng, ticks: int) -> np.ndarray:
+def _charger(rng: np.random.Generator, ticks: int) -> np.ndarray:
     """Heat of a constant current, which is switched on, turned down and off again, in a room."""
     level = np.zeros(ticks)
     at = int(rng.uniform(0.1, 0.3) * ticks)
@@ -275,7 +277,7 @@ def _charger(rng, ticks: int) -> np.ndarray:
     return rng.uniform(18.0, 26.0) + first_order_lag(level, _log_uniform(rng, 40, 900), _TICK_S)
 
 
-def _freezer(rng, ticks: int) -> np.ndarray:
+def _freezer(rng: np.random.Generator, ticks: int) -> np.ndarray:
     """A room, then the freezer, whose compressor runs and rests in turn, and out again."""
     at = (np.arange(ticks) * _TICK_S) % (period := rng.uniform(500.0, 1400.0))
     runs = rng.uniform(0.3, 0.6) * period
@@ -286,7 +288,7 @@ def _freezer(rng, ticks: int) -> np.ndarray:
     return first_order_lag(np.where(inside, cold + saw, room), rng.uniform(40.0, 500.0), _TICK_S)
 
 
-def _door(rng, ticks: int) -> np.ndarray:
+def _door(rng: np.random.Generator, ticks: int) -> np.ndarray:
     """A warm room, in which doors let the cold in for some minutes, several times."""
     draught = np.zeros(ticks)
     for start in rng.uniform(0.05, 0.9, int(rng.integers(2, 6))):

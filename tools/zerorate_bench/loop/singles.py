@@ -6,10 +6,11 @@ hand; and a further power-on that nobody has seen.
 """
 
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pyarrow.parquet as pq
@@ -17,13 +18,16 @@ from numpy.typing import NDArray
 from scipy.stats import chi2, ncx2
 from zerorate_tools.closing import load
 from zerorate_tools.loop.fit.regression import Regression
+from zerorate_tools.loop.read.sessions import Session
 from zerorate_tools.loop.report.report import report
 from zerorate_tools.loop.search.steps_first import bend_of
 from zerorate_tools.loop.verify.firmware import Firmware
 from zerorate_tools.loop.verify.run_kernels import run_and_prune
-from zerorate_tools.recordings import open_recording, write_recording
-from zerorate_tools.replay.samples import frames_in_batches
+from zerorate_tools.model import Model
+from zerorate_tools.recordings import Recording, open_recording, write_recording
+from zerorate_tools.replay.samples import Frames, frames_in_batches
 from zerorate_tools.simulate import simulate_sessions
+from zerorate_tools.simulate.device import Truth
 
 from ..tables import machine_line, outcomes
 from .devices import KINDS, describe
@@ -37,6 +41,8 @@ _NEAR_S = 90.0
 _INVENTED = 0.01
 #: Seconds of a further power-on in which its turn-on offset is learned.
 _LEARNED_S = 180
+
+_Made = tuple[Recording, Truth]
 
 
 @dataclass
@@ -87,7 +93,7 @@ def look_at_single(seed: int) -> Single:
     return Single(kind, seed, recordings, errors, kept, len(true), listed, invented, chance)
 
 
-def tellable(session, step: dict) -> float:
+def tellable(session: Session, step: dict[str, Any]) -> float:
     """The chance that a step of the bias is listed by who knows level and colour of the noise
     beside it, where one in a hundred recordings may have one invented: all its places are tried."""
     session = replace(session, steps=())  # else the very step that was listed is beside it
@@ -104,23 +110,27 @@ def tellable(session, step: dict) -> float:
     return float(ncx2.sf(chi2.isf(_INVENTED / session.blocks, 3), 3, size))
 
 
-def _is_near(event: dict, true: list[dict], logs: list[Path], made: list) -> bool:
+def _is_near(
+    event: dict[str, Any], true: list[dict[str, Any]], logs: list[Path], made: list[_Made]
+) -> bool:
     at = [log.stem for log in logs].index(event["recording"].split(".")[0])
     seconds = (event["t_us"] - made[at][1].t_us[0]) / 1e6
     return any(e["session"] == at + 1 and abs(e["at_s"] - seconds) < _NEAR_S for e in true)
 
 
-def _took_place(step: dict, made: list) -> bool:
+def _took_place(step: dict[str, Any], made: list[_Made]) -> bool:
     """Whether the recording went on until the step: how long a power-on is, is drawn, too."""
     truth = made[step["session"] - 1][1]
     return bool(step["at_s"] < (truth.t_us[-1] - truth.t_us[0]) / 1e6)
 
 
-def _held_out(path: Path, logs: list[Path], made: list, described: dict) -> dict:
+def _held_out(
+    path: Path, logs: list[Path], made: list[_Made], described: dict[str, Any]
+) -> dict[str, tuple[float, float]]:
     """(before, after) mdps at rest and in motion, over the samples that were left out."""
     table = pq.read_table(path)
     names, split = (np.array(table[c].to_pylist()) for c in ("recording", "split"))
-    parts: dict[str, list] = {"at rest": [], "in motion": []}
+    parts: dict[str, list[list[NDArray[np.float64]]]] = {"at rest": [], "in motion": []}
     for i, (log, (_, truth)) in enumerate(zip(logs, made)):
         own = names == log.name
         rows = np.searchsorted(truth.t_us, np.array(table["t_us"])[own])
@@ -135,13 +145,20 @@ def _held_out(path: Path, logs: list[Path], made: list, described: dict) -> dict
             if (held & there).any():
                 parts[where].append(_about(both, stretch, truth.still[rows] & held, held & there))
     return {
-        where: tuple(float(1e3 * np.sqrt((np.vstack(p) ** 2).mean())) for p in zip(*some))
+        where: (_rms_mdps(before), _rms_mdps(after))
         for where, some in parts.items()
         if some
+        for before, after in [zip(*some)]
     }
 
 
-def _about(both, stretch, rest, scored) -> list[NDArray[np.float64]]:
+def _rms_mdps(errors: Sequence[NDArray[np.float64]]) -> float:
+    return float(1e3 * np.sqrt((np.vstack(errors) ** 2).mean()))
+
+
+def _about(
+    both: list[np.ndarray], stretch: np.ndarray, rest: np.ndarray, scored: np.ndarray
+) -> list[NDArray[np.float64]]:
     """Errors before and after, each stretch about its own mean at rest."""
     out = []
     for error in both:
@@ -153,7 +170,7 @@ def _about(both, stretch, rest, scored) -> list[NDArray[np.float64]]:
     return out
 
 
-def _further(model, logs: list[Path], further) -> tuple[float, float]:
+def _further(model: Model, logs: list[Path], further: _Made) -> tuple[float, float]:
     """(before, after) mdps over a power-on that nobody saw, by a firmware that has lived through
     the recordings and learns no more than the first minutes of this one."""
     recording, truth = further
@@ -173,7 +190,7 @@ def _further(model, logs: list[Path], further) -> tuple[float, float]:
     return errors[0], errors[1]
 
 
-def _first(frames, recording) -> NDArray[np.bool_]:
+def _first(frames: Frames, recording: Recording) -> NDArray[np.bool_]:
     """(n,) whether a sample is of the first minutes."""
     return frames.t_us - recording.columns["t_us"][0] < 1e6 * _LEARNED_S
 
@@ -215,7 +232,7 @@ def steps(devices: int) -> int:
 
 def run(
     devices: int, processes: int, resume: Path | None, advance: Callable[[float], None]
-) -> dict:
+) -> dict[str, Any]:
     """So many devices, of every kind alike: their figures, and what became of each, as plain
     values. resume: as of `outcomes`."""
     each = list(outcomes(look_at_single, range(devices), processes, resume, advance))
@@ -224,7 +241,7 @@ def run(
     return {"devices": devices, "figures": figures, "each": each}
 
 
-def in_markdown(result: dict) -> str:
+def in_markdown(result: dict[str, Any]) -> str:
     """The figures as Markdown."""
     lines = [f"# One recording or two, of {result['devices']} simulated devices", ""]
     lines += ["`zerorate bench singles` wrote this page. " + machine_line(), ""]

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from itertools import product
 from os import PathLike
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from zerorate_tools.loop.read.still import still_ticks
@@ -51,7 +52,7 @@ _BESIDE_S = 500.0
 _MOST_EXAMPLES = 20
 
 
-def figures_of(size: dict) -> list[Figure]:
+def figures_of(size: dict[str, Any]) -> list[Figure]:
     """Time and memory beside their limits."""
     return [
         Figure(f"{SIZE}: seconds by the clock", size["seconds"], MOST_S, True, 1, unit="s"),
@@ -119,7 +120,7 @@ def run(
     resume: str | PathLike[str] | None = None,
     rows: str | None = None,
     advance: Callable[[float], None] = lambda n: None,
-) -> dict:
+) -> dict[str, Any]:
     """Run it and return the figures and tables as plain values; `in_markdown` makes them readable.
 
     nulls: devices of each kind of nothing; seeds: devices an effect; data: folder of the real
@@ -139,7 +140,7 @@ def run(
         found += rest_figures()
     if not rows or rows in SIZE:
         found += figures_of(close_cost(_WRITE))
-    result: dict = {"devices": len(seen), "machine": machine()}
+    result: dict[str, Any] = {"devices": len(seen), "machine": machine()}
     result["cpu_s_a_device"] = sum(o.cpu_s for o in seen) / max(len(seen), 1)
     if folder and folder.is_dir() and not rows:
         result["real_recordings"] = real.run(folder)
@@ -165,13 +166,13 @@ def _look(device: Device) -> Outcome:
     return look_at_files(device) if device.row in ROWS else run_trial(device)
 
 
-def _examples(outcomes: list[Outcome]) -> list[list]:
+def _examples(outcomes: list[Outcome]) -> list[list[Any]]:
     """[row, seed, names] of devices without an effect in which one was found."""
     nothing = [o for o in outcomes if not o.device.effects and o.found]
     return [[o.device.row, o.device.seed, o.found, o.confidence] for o in nothing[:_MOST_EXAMPLES]]
 
 
-def in_markdown(result: dict) -> str:
+def in_markdown(result: dict[str, Any]) -> str:
     """The figures as Markdown, the missed ones first."""
     missed = [f["name"] for f in result["figures"] if f["met"] is False]
     limits = sum(f["met"] is not None for f in result["figures"])
@@ -185,7 +186,7 @@ def in_markdown(result: dict) -> str:
     return "\n".join(parts)
 
 
-def renewed(page: str, figures: list[dict]) -> str:
+def renewed(page: str, figures: list[dict[str, Any]]) -> str:
     """A page of `in_markdown` with these figures in the place of its own of the same name, or after
     the last where it has none, and its head told anew."""
     lines = [*page.splitlines(), ""]
@@ -206,13 +207,23 @@ def _name(line: str) -> str:
     return line.split(" | ")[0].removeprefix("| ")
 
 
-def figure_table(figures: list[dict]) -> str:
+def figure_table(figures: list[dict[str, Any]]) -> str:
     """A row a figure, as `Figure.to_dict` has it."""
     header = ("figure", "measured", "limit", "reached", "95 % interval", "devices")
     return table(header, [_cells(**f) for f in figures])
 
 
-def _cells(name, value, limit, at_most, devices, low, high, unit, met) -> tuple:
+def _cells(
+    name: str,
+    value: float,
+    limit: float | None,
+    at_most: bool,
+    devices: int,
+    low: float | None,
+    high: float | None,
+    unit: str,
+    met: bool | None,
+) -> tuple[str, str, str, str, str, int]:
     measured = f"{value:.1f}" if unit == "%" else f"{value:.3f} {unit}"
     bound = "" if limit is None else f"at {'most' if at_most else 'least'} {limit:g}"
     span = "" if low is None else f"{low:.1f}-{high:.1f}"

@@ -8,6 +8,7 @@ import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from zerorate_tools.closing import load
@@ -15,11 +16,14 @@ from zerorate_tools.errors import ZerorateError
 from zerorate_tools.importers import import_recording
 from zerorate_tools.loop.analyse import sessions_of
 from zerorate_tools.loop.read.blocks import session_of
+from zerorate_tools.loop.read.sessions import Session
 from zerorate_tools.loop.read.ticks import read_ticks, tick_seconds
 from zerorate_tools.loop.report.report import report
+from zerorate_tools.loop.verify.analysis import Analysis
 from zerorate_tools.loop.verify.firmware import Firmware
 from zerorate_tools.loop.verify.power_on import BlockMeans, PowerOn, ideal_dps, turn_on
 from zerorate_tools.loop.verify.run_kernels import run_and_prune
+from zerorate_tools.model import Model
 from zerorate_tools.recordings import Recording, open_recording, read_recording, write_recording
 from zerorate_tools.recordings.checks import GAP
 from zerorate_tools.recordings.recording import ACCEL, GYRO, TEMP, TIME
@@ -69,7 +73,7 @@ VARIANTS: dict[str, Callable[[Recording], list[Recording]]] = {
 }
 
 
-def run(data: Path | None, advance: Callable[[float], None]) -> list[dict]:
+def run(data: Path | None, advance: Callable[[float], None]) -> list[dict[str, Any]]:
     """A row for each recording and variant: before and after in mdps where it was not fitted, what
     was found, steps listed; `refused` says why there is none.
     """
@@ -113,11 +117,13 @@ def _written(recording: Recording, path: Path) -> Path:
     return path
 
 
-def _sessions(logs: list[Path]):
+def _sessions(logs: list[Path]) -> list[Session]:
     return sessions_of([read_ticks(log, max(map(tick_seconds, logs))) for log in logs])[0]
 
 
-def _looked_at(whole: Recording, variant: str, made: list[Recording], scratch: Path) -> dict:
+def _looked_at(
+    whole: Recording, variant: str, made: list[Recording], scratch: Path
+) -> dict[str, Any]:
     logs = [_written(r, scratch / f"part-{i}.parquet") for i, r in enumerate(made)]
     try:
         analysis, model = run_and_prune(load([*logs]), logs, scratch / "corrected.parquet")
@@ -138,14 +144,14 @@ def _looked_at(whole: Recording, variant: str, made: list[Recording], scratch: P
     return row
 
 
-def _is_listed(events: list[dict], recording: Recording) -> bool:
+def _is_listed(events: list[dict[str, Any]], recording: Recording) -> bool:
     """Whether a step is listed within a fiftieth of the course of the one put in."""
     at = recording.columns[TIME]
     true = at[int(np.ceil(_STEP_AT * len(at)))]
     return any(abs(event["t_us"] - true) < 0.02 * (at[-1] - at[0]) for event in events)
 
 
-def _elsewhere(analysis, model, log: Path, other: Path) -> dict:
+def _elsewhere(analysis: Analysis, model: Model, log: Path, other: Path) -> dict[str, float]:
     """Before and after on a part that was not given, by a firmware that has learned the part that
     was and takes its offset from the first still minute; at temperatures that both have."""
     own, scales = analysis.sessions[0], open_recording(other).scales
@@ -173,7 +179,7 @@ def _elsewhere(analysis, model, log: Path, other: Path) -> dict:
     return dict(zip(("other_before_mdps", "other_after_mdps"), map(rms_mdps, errors)))
 
 
-def _seen(own, other) -> np.ndarray:
+def _seen(own: Session, other: Session) -> np.ndarray:
     """(n,) blocks of another session at temperatures that the first has."""
     if "temp" not in own.sources:
         return np.ones(other.blocks, bool)
@@ -182,7 +188,7 @@ def _seen(own, other) -> np.ndarray:
     return (degc > known.min() - _NEAR_DEGC) & (degc < known.max() + _NEAR_DEGC)
 
 
-def in_markdown(rows: list[dict]) -> str:
+def in_markdown(rows: list[dict[str, Any]]) -> str:
     """The page of `zerorate bench variants`: how many of each variant are worse, then every row."""
     lines = [
         "# Real recordings cut, bereft of a sensor, and with a step",
@@ -205,12 +211,14 @@ def in_markdown(rows: list[dict]) -> str:
     return "\n".join([*lines, table_of(rows)])
 
 
-def _by_variant(rows: list[dict]) -> dict[str, list[dict]]:
+def _by_variant(rows: list[dict[str, Any]]) -> dict[str, list[dict[str, Any]]]:
     names = dict.fromkeys(row["variant"] for row in rows)
     return {name: [r for r in rows if r["variant"] == name] for name in names}
 
 
-def _counted(variant: str, rows: list[dict]) -> tuple:
+def _counted(
+    variant: str, rows: list[dict[str, Any]]
+) -> tuple[str, int, int, int, int, float | str]:
     closed = [r for r in rows if "after_mdps" in r]
     ratios = [r["after_mdps"] / r["before_mdps"] for r in closed]
     median = round(float(np.median(ratios)), 2) if ratios else ""

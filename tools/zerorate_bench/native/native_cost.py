@@ -1,9 +1,11 @@
 """What a sample costs as machine code on emulated processors, beside C -O2 of the same kernels."""
 
+from __future__ import annotations
+
 import ast
 import struct
 from array import array
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from statistics import mean, median
 from typing import Any
@@ -20,6 +22,7 @@ from zerorate_tools.kernels.reading import Kernels, firmware_package
 from zerorate_tools.model import Slot, build_model, encoded
 from zerorate_tools.model.files import sensor_for
 from zerorate_tools.model.term import Term
+from zerorate_tools.recordings import Scales
 from zerorate_tools.simulate import simulate
 
 from zerorate_bench.native.parts import BURST, PARTS
@@ -72,7 +75,7 @@ class Emulated:
         self._blocks: dict[tuple[int, int], tuple[int, int, int]] = {}
         self.instructions = self.cycles = 0
 
-    def __call__(self, *arguments: array | int) -> int:
+    def __call__(self, *arguments: array[int] | int) -> int:
         """Its result, a signed int; arrays hold what it left. Raises ZerorateError for a crash."""
         passed = [self._given(i, argument) for i, argument in enumerate(arguments)]
         for register, value in zip(self._arguments, passed):
@@ -92,7 +95,7 @@ class Emulated:
         value = self._cpu.reg_read(self._arguments[0])
         return value - (value >> 31 << 32)
 
-    def _given(self, i: int, argument: array | int) -> int:
+    def _given(self, i: int, argument: array[int] | int) -> int:
         if isinstance(argument, int):
             return argument
         self._cpu.mem_write(self.address(i), argument.tobytes())
@@ -102,7 +105,7 @@ class Emulated:
         """Where argument i lies where it is an array, of this call and of the latest one."""
         return _DATA + _SIZE * i
 
-    def _block(self, cpu, at: int, size: int, _) -> None:
+    def _block(self, cpu: Any, at: int, size: int, _: Any) -> None:
         key = at, size
         if key not in self._blocks:
             code = self._code[at - self._at : at - self._at + size]
@@ -230,7 +233,7 @@ def effects_cost() -> dict[str, dict[str, float]]:
     return {name: _of_slots(recording.scales, terms, frames) for name, terms in models.items()}
 
 
-def _of_slots(scales, terms, frames: NDArray) -> dict[str, float]:
+def _of_slots(scales: Scales, terms: Sequence[Term], frames: NDArray[np.int32]) -> dict[str, float]:
     code = emulated(firmware_package(), "effects", "thumb")
     corrector, effects = Corrector(sensor_for(scales)), EffectModel()
     model = build_model([Slot(t, (0.01 / 25**t.power,) * 3, "") for t in terms], scales)
@@ -241,7 +244,9 @@ def _of_slots(scales, terms, frames: NDArray) -> dict[str, float]:
     return _cost(code, corrector.state, effects.e, frames)
 
 
-def _cost(code: Emulated, a: array, b: array, frames: NDArray, first: int = 0) -> dict[str, float]:
+def _cost(
+    code: Emulated, a: array[int], b: array[int], frames: NDArray[np.int32], first: int = 0
+) -> dict[str, float]:
     """Of calls with each frame, counted from the first of them on."""
     counts = []
     for row in frames:
@@ -266,7 +271,9 @@ def _against_c(work: Workload, processor: str, part: str, at_once: int) -> dict[
     return found
 
 
-def _run(code: Emulated, work: Workload, at_once: int) -> tuple[bytes, tuple[list, list]]:
+def _run(
+    code: Emulated, work: Workload, at_once: int
+) -> tuple[bytes, tuple[list[float], list[float]]]:
     """(final state, (instructions of a sample of each call, cycles of a sample of each call))."""
     state, settings = (array("i", words.tobytes()) for words in (work.state, work.settings))
     counts, cycles = [], []
@@ -276,7 +283,9 @@ def _run(code: Emulated, work: Workload, at_once: int) -> tuple[bytes, tuple[lis
     return state.tobytes(), (counts, cycles)
 
 
-def _calls(code: Emulated, work: Workload, at_once: int, s: array, c: array) -> Iterator[int]:
+def _calls(
+    code: Emulated, work: Workload, at_once: int, s: array[int], c: array[int]
+) -> Iterator[int]:
     """Make each call and yield how many samples it took."""
     for first in range(0, CYCLE, at_once):
         rows = work.rows[first : min(first + at_once, CYCLE)]
