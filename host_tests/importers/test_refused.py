@@ -25,6 +25,7 @@ WITH_A_RATE = "// Sample rate: 50.0Hz\nGyr_X;Gyr_Y;Gyr_Z\n" + "0.1;0.2;0.3\n" * 
 SHAKEN = rates("t_s gx_dps gy_dps gz_dps ax ay az".split(), 500)
 SHAKEN[["ax", "ay", "az"]] = [0.5, 0.0, 11.0] + 5.0 * np.sin(np.outer(np.arange(500), [1, 2, 3]))
 TENS = np.arange(0, 5000, 10)
+CLOCK = 141700 + np.r_[30:60:0.1, 100:160:0.1]
 TURNED = pd.DataFrame({"t_s": TENS / 1e3, "gx": np.sin(TENS), "gy": 0.0, "gz": np.cos(TENS)})
 LISTS = pd.DataFrame({"t_s": np.arange(300) / 100, "pulse": 70, "gyro": "[0.8, -0.5, 0.3]"})
 
@@ -82,6 +83,8 @@ LISTS = pd.DataFrame({"t_s": np.arange(300) / 100, "pulse": 70, "gyro": "[0.8, -
         ("t_s,gx_dps,gy_dps,gz_dps,ax,ay,az\n0,1,1,1,2.5,2.5,0", {}, "--accel-unit m/s2 [^-]*$"),
         (table(500).assign(az_g=0.1), {}, "map other columns, or leave it out by --map ax=none"),
         (table(500).rename(columns={"t_s": "min.timestamp"}), {}, r"--time-unit s \(100 Hz\)"),
+        (table(500).assign(t_s=TENS, clock_ms=TENS), {}, "--map t_us=t_s:ms, or --map t_us=clock_"),
+        (table(900).assign(t_s=CLOCK), {}, "write colons"),
         (table(500).rename(columns={"t_s": "time"}).assign(time="May 1st, at noon"), {},
          "no time can be read from column 'time'; .*--hz N"),
         (table(500), {"instance": 1}, "there is one gyroscope; leave --instance away"),
@@ -98,7 +101,7 @@ LISTS = pd.DataFrame({"t_s": np.arange(300) / 100, "pulse": 70, "gyro": "[0.8, -
         ("#IMU,1,2,3\n" * 9, {}, "row 1: each line begins with '#', as comments do: .*; take it"),
         (json.dumps({"fs": 50, "data": [{"gx_dps": 1, "gy_dps": 2, "gz_dps": 3}] * 10}), {},
          "give --hz 50 .as the file says"),
-        (rates("t_s gyro_x_rpm gyro_y_rpm gyro_z_rpm".split()), {}, "the unit 'rpm' .*SIZE is how many dps"),
+        (rates("t_s gyro_x_rpm gyro_y_rpm gyro_z_rpm".split()), {}, "the unit 'rpm' .*dps one is"),
         (rates("t_s r.beta r.gamma r.alpha".split()), {}, "--map gx=r.beta:dps --map gy=r.gamma:d"),
         (rates("t_s p q r".split()), {}, "if these are rates: --map gx=p:dps --map gy=q:dps"),
         # a quaternion is none, and a phone's Sensor Logger writes radians

@@ -267,6 +267,7 @@ def test_an_attitude_is_offered_with_words_that_keep_its_digits(tmp_path, names)
 CLOCK = [f"12:00:{t:06.3f}" for t in table(500)["t_s"]]
 RARE = pd.Timestamp("2021-03-05T23:50") + pd.to_timedelta(np.arange(500) * 15, unit="s")
 SINCE_NS = 1_777_636_800_990_000_000 + np.arange(500) * 10_000_000
+SINCE = pd.Timestamp("2026-05-01T12:00:57") + pd.to_timedelta(np.arange(500) / 100, "s")
 SECONDS = pd.Timestamp("2026-05-01") + pd.to_timedelta(np.arange(500) // 100, "s")
 
 
@@ -282,6 +283,10 @@ SECONDS = pd.Timestamp("2026-05-01") + pd.to_timedelta(np.arange(500) // 100, "s
         ({"T (°C)": np.arange(500) / 5000, "Zeit (s)": np.arange(500) / 100}, "", 10_000),
         ({"gps_tow": 137_649 + np.arange(500) / 100}, "", 10_000),
         ({"time": RARE.strftime("%H:%M:%S")}, "", 15_000_000),  # over midnight
+        ({"time": RARE.strftime("%d-%b-%Y %H:%M:%S")}, "", 15_000_000),
+        ({"time": (SINCE + pd.Timedelta("59min")).strftime("%M:%S.%f")}, "", 10_000),
+        ({"time": [f"{t / 100} sec" for t in range(500)]}, "", 10_000),
+        ({"tv_sec": SINCE_NS // 10**9, "tv_usec": SINCE_NS % 10**9 // 1000}, "", 10_000),
         ({"header.stamp.sec": SINCE_NS // 10**9, "header.stamp.nanosec": SINCE_NS % 10**9}, "",
          10_000),
         ({"A": SINCE_NS // 10**9, "B": SINCE_NS % 10**9}, "t_us=A:s+B:ns", 10_000),
@@ -326,7 +331,7 @@ def test_usual_names_and_units_of_rates_are_known(tmp_path, name):
 @pytest.mark.parametrize(
     ("name", "size"),
     [
-        ("accel_{}_ug", 1e6), ("imu1.fb{}", 9.80665), ("Corrected Accelerometer Vector {} (g)", 1.0),
+        ("accel_{}_ug", 1e6), ("imu1.fb{}", 9.80665), ("Corrected Accelerometer Vector {} (g)", 1),
         ("f_{}", 9.80665), ("acce_{} [m·s⁻²]", 9.80665), ("{}_ACCL_OUT (milli-g)", 1e3),
         ("accelerationIncludingGravity.{}", 9.80665),
     ],

@@ -253,6 +253,16 @@ def only_grows(values: np.ndarray) -> bool:
     return bool(1000 * back < len(steps) < 2 * forward)
 
 
+def are_digits_of_clock(values: np.ndarray) -> bool:
+    """Whether numbers are a clock's hours, minutes and seconds, as 141759.5: where a minute ends,
+    they go on by 40 too many."""
+    values = values[np.isfinite(values)]
+    steps = np.diff(values)
+    too_many = steps[1:] - np.median(steps) if len(steps) else steps
+    at_end = np.abs(too_many % 4000 - 40.0) < 1.0
+    return bool((values % 100 < 60).all() and at_end.any() and (at_end | (steps[1:] < 30)).all())
+
+
 def counts_rows(values: np.ndarray) -> bool:
     """Whether each is one more than the one before."""
     return len(values) > 1 and bool((np.diff(values) == 1).all())

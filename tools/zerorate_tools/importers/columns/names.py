@@ -50,8 +50,7 @@ _TIME = re.compile(
     r"(?:sys|gyro|imu)ts)$"
 )
 _STEP = re.compile("(?:d|delta)t(?:ime)?|timestep|(?:sampl(?:e|ing))?(?:interval|period)")
-_SEC = re.compile(r"(.*?)(?:secs?|seconds?)$")
-_NANOSEC = re.compile(r"(.*?)(?:nanosecs?|nsecs?|nanoseconds?)$")
+_SEC = re.compile(r"(.*?)(nano|micro|milli|[num])?(?:secs?|seconds?)$")
 #: A column of a variable of a .mat.
 _ARRAY = re.compile(r"\[\d+\]$")
 _LAST_AXIS = re.compile(f".*{_AXIS}(?:axis)?$")
@@ -177,17 +176,16 @@ def in_units_of_time(names: list[str]) -> list[str]:
     return [name for name in names if unit_in_name("t_us", name)]
 
 
-def split_time(names: list[str]) -> tuple[str, str] | None:
-    """The columns of whole seconds and of the nanoseconds beside them, as ROS prints a stamp."""
+def split_times(names: list[str]) -> list[tuple[str, str, str]]:
+    """Columns of whole seconds, those of a smaller unit beside them, and that unit, as ROS and C
+    have a stamp."""
     by_stem: dict[str, dict[str, str]] = {}
     for name in names:
-        text = re.sub(r"[^a-z]", "", name.lower())
-        nano, sec = _NANOSEC.match(text), _SEC.match(text)
-        if nano:
-            by_stem.setdefault(nano[1], {})["ns"] = name
-        elif sec:
-            by_stem.setdefault(sec[1], {})["s"] = name
-    return next(((two["s"], two["ns"]) for two in by_stem.values() if len(two) == 2), None)
+        if found := _SEC.match(re.sub(r"[^a-z]", "", name.lower())):
+            unit = {"nano": "ns", "micro": "us", "milli": "ms"}.get(found[2], f"{found[2] or ''}s")
+            by_stem.setdefault(found[1], {})[unit] = name
+    pairs = [(held, unit) for held in by_stem.values() for unit in ("ns", "us", "ms")]
+    return [(held["s"], held[unit], unit) for held, unit in pairs if {"s", unit} <= held.keys()]
 
 
 def of_other_unit(name: str) -> bool:

@@ -1,6 +1,5 @@
 """Which columns of a table an import takes, in which units, decided once before the rows."""
 
-import re
 import shlex
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -14,6 +13,7 @@ from ...recordings.recording import ACCEL, ATTITUDE, COLUMNS, GYRO, TEMP, TIME
 from ..tables.table import Chunk, Table
 from . import names as usual
 from .guesses import (
+    are_digits_of_clock,
     are_whole,
     as_long_as_gravity,
     by_habit,
@@ -92,6 +92,8 @@ def planned(
     first = table.first_rows(plan.columns)
     ask = (plan, table, units or {}, first, path)
     time_unit = _unit(TIME, *ask, None) if TIME in wanted else None
+    if time_unit and "time" not in plan.typed:
+        _refuse_other_times(wanted[TIME], time_unit, table, first, path)
     t_s = wanted[TIME].taken(first, TIME_S[time_unit]) if time_unit else None
     scaled = _of_attitude(wanted, first)
     for target, mapped in wanted.items():
@@ -117,6 +119,21 @@ def planned(
         raise BadRecording(path, _of_unknown([*unknown]), do=do)
     plan.raw = frozenset(raw)
     return plan
+
+
+def _refuse_other_times(
+    time: Mapped, unit: str, table: Table, first: Mapping[str, np.ndarray], path: Path
+) -> None:
+    """Raise BadRecording for a time that another one denies, and for the digits of a clock."""
+    column = time.column
+    meant, other = _as_another_time(column, table) or (unit, "")
+    if meant != unit and not time.plus:
+        problem = f"column {column!r} in {unit} does not go on as {other!r} does"
+        words = f"{map_words(TIME, column, meant)}, or {map_words(TIME, other)}"
+        raise BadRecording(path, problem, do=f"give {words}")
+    if unit == "s" and column not in table.calendar and are_digits_of_clock(first[column]):
+        problem = f"column {column!r} goes from 59 to 100: the digits of a clock, as 141759.5"
+        raise BadRecording(path, problem, do="write colons between them, as 14:17:59.5")
 
 
 def _of_unknown(columns: list[str]) -> str:
@@ -167,10 +184,9 @@ def _found(
     names = {**names, **usual.most_alike(_with_gravity(table), gyro, instance)}
     temp = usual.temperature(table.names)
     found = {t: Mapped(t, c) for t, c in {**names, **({TEMP: temp} if temp else {})}.items()}
-    split, time = usual.split_time(table.names), _time_column(table)
-    if split:
-        found[TIME] = Mapped(TIME, split[0], "s", (split[1], "ns"))
-    elif time:
+    if split := _split_time(table):
+        found[TIME] = Mapped(TIME, split[0], "s", split[1:])
+    elif time := _time_column(table):
         found[TIME] = Mapped(TIME, time)
     return found
 
@@ -197,6 +213,15 @@ def _with_gravity(table: Table) -> list[dict[str, str]]:
     first = table.first_rows([name for group in groups for name in group.values()])
     having = [one for one in groups if gravity_unit([first[name] for name in one.values()])]
     return having or groups
+
+
+def _split_time(table: Table) -> tuple[str, str, str] | None:
+    """The columns of seconds and of a part of one, which is never as long as a second."""
+    for second, part, unit in usual.split_times(table.names):
+        first = table.first_rows([second, part])
+        if np.nanmax(first[part], initial=0.0) * TIME_S[unit] < 1.0 and are_whole(first[second]):
+            return second, part, unit
+    return None
 
 
 def _time_column(table: Table) -> str | None:
@@ -348,7 +373,7 @@ def _list(names: list[str], most: int = _LISTED) -> str:
 
 
 def _as_another_time(column: str, table: Table) -> tuple[str, str] | None:
-    """(unit, why) of a time beside which another one goes on, whose name says its unit."""
+    """(unit, that other one) of a time beside which another goes on, whose name says its unit."""
     for other in usual.in_units_of_time(table.names):
         first = table.first_rows([column, other]) if other != column else {}
         both = np.isfinite(list(first.values())).all(axis=0)
@@ -358,7 +383,7 @@ def _as_another_time(column: str, table: Table) -> tuple[str, str] | None:
             off = {u: abs(np.log(spans[0] * s / (spans[1] * theirs))) for u, s in TIME_S.items()}
             unit = min(off, key=off.__getitem__)
             if off[unit] < _ONE_TIME:
-                return unit, f"it goes on as {other!r}"
+                return unit, other
     return None
 
 
@@ -384,9 +409,9 @@ def _unit(
         problem = f"the unit {other!r} of column {mapped.column!r} is not known"
         raise BadRecording(path, problem, do=do)
     if unit is None:
-        unit, why = (_as_another_time(mapped.column, table) if target == TIME else None) or (
-            guessed_unit(target, plan.wanted, table.names, first, t_s)
-        )
+        another = _as_another_time(mapped.column, table) if target == TIME else None
+        unit, why = another or guessed_unit(target, plan.wanted, table.names, first, t_s)
+        why = f"it goes on as {why!r}" if another else why
         note = f"{kind} taken in {unit}: {why}"
         if unit is not None and note not in plan.notes:
             plan.notes.append(note)

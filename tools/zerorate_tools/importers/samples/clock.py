@@ -14,7 +14,7 @@ from .spool import PLACE, TIME, Spool
 _LONGEST_PAUSE_US = 10_000_000
 #: Stamps on both sides of a torn one are nearer to each other; of all, so many are torn at most.
 _BESIDE_US, _MOST_TORN = 1e6, 0.01
-_DAY_US = 86_400e6
+_HOUR_US, _DAY_US = 3_600e6, 86_400e6
 #: Rows may be rarer than a counter's pause where midnight falls between two of them.
 _LONGEST_NIGHT_US = 3_600e6
 _MOST_US = 2.0**62
@@ -70,8 +70,11 @@ class Unwrapped:
     def _clock(self, earlier: float, later: float) -> tuple[str, float]:
         """What ran over, and microseconds that it holds; 0 where nothing did."""
         spans = {f"{bits} bits": 2.0**bits * self._step_us for bits in (30, 31, 32)}
+        if not self._step_us:
+            spans["60 minutes"] = _HOUR_US
         for clock, span in {**spans, "24 hours": _DAY_US}.items():
-            longest = _LONGEST_PAUSE_US if self._step_us else _LONGEST_NIGHT_US
+            night = clock == "24 hours" and not self._step_us
+            longest = _LONGEST_NIGHT_US if night else _LONGEST_PAUSE_US
             if earlier < span and 0 < later + span - earlier < longest:
                 return clock, span
         return "", 0.0

@@ -260,6 +260,12 @@ class _Gathering:
     def _check(self) -> None:
         refuse_change_of_unit(self.unfiltered, self.plan, self.table, self.path)
         self._refuse_too_fast()
+        torn = self.dropped[_NO_TIME]
+        if 2 * torn > self.rows:
+            do = "write it as a number or a date, or give --hz"
+            raise BadRecording(
+                self.path, f"{torn} of {self.rows} time stamps are no numbers", do=do
+            )
         if not self.samples:
             dropped = self.table.dropped + self.dropped
             if not dropped and not self.rows:
@@ -267,12 +273,6 @@ class _Gathering:
             why = [f"{count} rows: {why}" for why, count in dropped.items()]
             do = "write each of three rates as a number in a cell of its own"
             raise BadRecording(self.path, "no sample is left", do="; ".join([*why, do]))
-        torn = self.dropped[_NO_TIME]
-        if 2 * torn > self.rows:
-            do = "write it as a number or a date, or give --hz"
-            raise BadRecording(
-                self.path, f"{torn} of {self.rows} time stamps are no numbers", do=do
-            )
         self.runs.refuse_a_restart(self.path)
 
     def _refuse_too_fast(self) -> None:

@@ -16,8 +16,8 @@ import pyarrow.csv
 from ...errors import BadRecording
 from ...recordings.text import line_blocks, rows_of
 from ..report import cut_words
-from .sentences import COMMENTS, DAY, Rows
-from .sniffing import Form, sniffed, without_arrows
+from .sentences import COMMENTS, Rows
+from .sniffing import DAY, Form, sniffed, without_arrows
 from .table import Chunk, Table
 
 if TYPE_CHECKING:
@@ -157,6 +157,8 @@ def _numbers(cells: pa.Array, name: str, form: Form) -> np.ndarray:
         return pc.cast(codes, pa.float64()).to_numpy(zero_copy_only=False)
     if name in form.dates:
         return seconds_of(cells)
+    if name in form.units:
+        cells = pc.replace_substring_regex(cells, rf"\s*{re.escape(form.units[name])}\s*$", "")
     if form.decimal_comma:
         cells = pc.replace_substring(cells, ",", ".")
     try:
@@ -168,7 +170,8 @@ def _numbers(cells: pa.Array, name: str, form: Form) -> np.ndarray:
 def _some_numbers(cells: pa.Array) -> np.ndarray:
     import pandas
 
-    text = pandas.Series(_decoded(cells), dtype=object).str.strip()
+    text = pandas.Series(_decoded(cells), dtype=object).str.strip().str.replace("−", "-")
+    text = text.str.replace(r"(?<=\d)['’\u00a0\u202f](?=\d{3})", "", regex=True)
     return pandas.to_numeric(text, errors="coerce").to_numpy(dtype=float)
 
 
@@ -178,8 +181,9 @@ def seconds_of(cells: pa.Array) -> np.ndarray:
     import pandas
 
     text = pandas.Series(_decoded(cells), dtype=object).str.strip()
-    text = text.str.replace(rf"^{DAY}", "", regex=True).str.replace(",", ".")
+    text = text.str.replace(rf"(?i)^{DAY}|\[\w+]$", "", regex=True).str.replace(",", ".")
     text = text.str.replace(r"^(\d\d?:\d\d:\d\d):(\d+)", r"\1.\2", regex=True)
+    text = text.str.replace(r"^(\d\d?:\d\d\.)", r"0:\1", regex=True)
     text = text.str.replace(r"\s+([+-]\d\d:?\d\d)$", r"\1", regex=True)
     if text.str.match(r"\d\d?:").any():
         return _since_midnight(text)

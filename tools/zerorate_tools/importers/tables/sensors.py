@@ -151,7 +151,7 @@ def _times(table: Table, column: str) -> list[str]:
     found = [
         *usual.time_columns(table.names),
         *table.calendar,
-        *(usual.split_time(table.names) or ()),
+        *(name for split in usual.split_times(table.names) for name in split[:2]),
     ]
     if found:
         return [name for name in table.names if name in found]

@@ -19,10 +19,8 @@ _MARKS = tuple(mark.encode() for mark in COMMENTS)
 _MOST_KINDS = 40
 #: Numbers of a line that may be a row without a word.
 _OF_A_ROW = 3
-#: A day before a time of the day, whatever its order.
-DAY = r"\d\d?[./-]\d\d?[./-]\d{4},?\s+"
 _CLOCK = (
-    rf"(?:\d{{4}}[-/]\d\d[-/]\d\d[T ]|{DAY})?\d\d?:\d\d:\d\d(?:[.,:]\d+)?"
+    r"(?:\d{4}[-/]\d\d[-/]\d\d[T ]|\d\d?[./-]\d\d?[./-]\d{4},?\s+)?\d\d?:\d\d:\d\d(?:[.,:]\d+)?"
     r"(?:\s*[ap]\.?m\b\.?|Z|[+-]\d\d:?\d\d)?"
 )
 _NUMBER = r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|nan\b)"
@@ -94,7 +92,7 @@ def _named(heading: str, beneath: bool, texts: tuple[bytes, ...]) -> Kind:
         text, own = _without_unit(words[at])
         name, whose = _name(text, whose, beneath and not at)
         behind = _BEHIND.match(words[at + 1])
-        if behind and _is_unit(behind[1].strip("[]()")):
+        if behind and is_unit(behind[1].strip("[]()")):
             own, words[at + 1] = behind[1].strip("[]()"), words[at + 1][behind.end() :]
         names.append(name)
         units.append(own or (unit if not at and name.startswith(whose) else ""))
@@ -133,11 +131,12 @@ def _name(text: str, whose: str, beneath: bool) -> tuple[str, str]:
 
 def _without_unit(text: str) -> tuple[str, str]:
     """A text without what is in brackets, and the unit that is."""
-    units = [found for found in _IN_BRACKETS.findall(text) if _is_unit(found)]
+    units = [found for found in _IN_BRACKETS.findall(text) if is_unit(found)]
     return _IN_BRACKETS.sub("", text), units[-1] if units else ""
 
 
-def _is_unit(text: str) -> bool:
+def is_unit(text: str) -> bool:
+    """Whether a text is a unit of anything that a recording has."""
     return any(unit_in_name(target, f"x [{text}]") for target in ("t_us", "gx", "ax", "temp"))
 
 

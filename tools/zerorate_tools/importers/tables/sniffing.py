@@ -12,7 +12,7 @@ from ...errors import BadRecording
 from ...recordings.text import head
 from ..columns.guesses import counts_rows, only_grows
 from ..columns.units import without_unit
-from .sentences import COLOUR, COMMENTS, DAY, Kind, Reader, Rows, columns_of, kinds_in
+from .sentences import COLOUR, COMMENTS, Kind, Reader, Rows, columns_of, is_unit, kinds_in
 
 _HEAD_BYTES = 262_144
 #: What some programs write before the first line of UTF-8.
@@ -26,9 +26,14 @@ _SEEN, MOST_WORDS = 3000, 12
 _ONE_LINE = "print each sample on a line of its own, as 0.8,-0.5,0.3 or gx:0.8 gy:-0.5 gz:0.3"
 _DELIMITERS = (",", ";", "\t", "|", " ")
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$")
+_WITH_UNIT = re.compile(r"([-+]?[\d.,]+(?:[eE][-+]?\d+)?)\s*([^\d\s.,]\S*)$")
 _DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+([eE][-+]?\d+)?$")
+_ISO = r"\d{4}[-/]\d\d[-/]\d\d[T ]\d\d:\d\d|\d{8}T\d{6}"
+#: Words of a day before a time of the day, in any order: 01-May-2026, May 1, 2026, 0 days.
+DAY = rf"(?!{_ISO})(?:[a-z0-9]{{1,9}}[\s,./_-]+){{1,4}}(?=\d\d?:)"
+#: A spreadsheet writes a time of the day as minutes and seconds: 17:54.1.
 DATE = re.compile(
-    rf"\d{{4}}[-/]\d\d[-/]\d\d[T ]\d\d:\d\d|(?:{DAY})?\d\d?:\d\d:\d\d([.,:]\d+)?(\s*[ap]\.?m\.?)?$",
+    rf"{_ISO}|(?:{DAY})?\d\d?:\d\d(?::\d\d)?(?:(?<=:\d\d:\d\d)|(?=\.))([.,:]\d+)?(\s*[ap]\.?m\.?)?$",
     re.I,
 )
 #: What monitors put before each line: 12:00:00.250 -> or [2026-05-01 12:00:00.250].
@@ -60,7 +65,7 @@ class Form:
     """How a text holds its table. names: of the columns, as numbers from 1 where nothing names
     them; skip: lines before the first row; words: by column, where its cells are few words;
     arrows: a clock stands before lines; kinds: of lines of words and numbers;
-    scales: by column, what its numbers are multiplied by."""
+    scales: by column, what its numbers are multiplied by; units: what stands behind them."""
 
     names: list[str]
     skip: int
@@ -74,6 +79,7 @@ class Form:
     arrows: bool = False
     kinds: tuple[Kind, ...] = ()
     scales: dict[str, float] = field(default_factory=dict)
+    units: dict[str, str] = field(default_factory=dict)
 
 
 def sniffed(path: Path) -> Form:
@@ -174,6 +180,10 @@ def _table_in(lines: list[str], every: list[str], encoding: str, path: Path) -> 
         _cells(lines[skip], delimiter) if at is not None else _whole_row(lines[skip:], delimiter)
     )
     names, note = _names(lines, at, skip, first, delimiter)
+    found_units = list(map(_unit_behind, first))
+    names = [f"{name} [{unit}]" if unit else name for name, unit in zip(names, found_units)]
+    units = {name: unit for name, unit in zip(names, found_units) if unit}
+    first = [cell.strip().removesuffix(unit) for cell, unit in zip(first, found_units)]
     dates = frozenset(name for name, cell in zip(names, first) if DATE.match(cell.strip()))
     return Form(
         names,
@@ -182,7 +192,8 @@ def _table_in(lines: list[str], every: list[str], encoding: str, path: Path) -> 
         encoding,
         decimal_comma=any(_DECIMAL_COMMA.match(c.strip()) for c in first),
         dates=dates,
-        words=_words(every[skip:], names, delimiter, dates),
+        words=_words(every[skip:], names, delimiter, dates | {*units}),
+        units=units,
         note=note,
         said_hz=_rate_said(lines[:skip]),
     )
@@ -204,7 +215,10 @@ def _says_its_names(line: str, lines: list[str], delimiter: str) -> bool:
 def _words(
     lines: list[str], names: list[str], delimiter: str, dates: frozenset[str]
 ) -> dict[str, list[str]]:
-    """The words of those columns that have few, in the order in which they come first."""
+    """The words of those columns that have few, in the order in which they come first.
+
+    dates: columns of other texts.
+    """
     rows = [_cells(line, delimiter) for line in lines[:_SEEN]]
     rows = [[cell.strip() for cell in row] for row in rows if len(row) == len(names)]
     out = {}
@@ -279,9 +293,16 @@ def _cells(line: str, delimiter: str) -> list[str]:
 
 def _numbers(cells: list[str], delimiter: str) -> int:
     def is_one(cell: str) -> bool:
-        return any(form.match(cell) for form in (_NUMBER, _DECIMAL_COMMA, DATE))
+        is_number = any(form.match(cell) for form in (_NUMBER, _DECIMAL_COMMA, DATE))
+        return is_number or bool(_unit_behind(cell))
 
     return sum(is_one(cell.strip()) for cell in cells)
+
+
+def _unit_behind(cell: str) -> str:
+    """The unit that stands behind a number; "" where none does."""
+    found = _WITH_UNIT.match(cell.strip())
+    return found[2] if found and is_unit(found[2]) else ""
 
 
 def _names(
