@@ -6,9 +6,12 @@ try:
 except ImportError:
     import time
 
+    _BOOTTIME = getattr(time, "CLOCK_BOOTTIME", None)  # Linux's, which a suspension does not stop
+
     def ticks_us() -> int:
         """Microseconds that only go forward."""
-        return time.monotonic_ns() // 1000
+        now_ns = time.monotonic_ns() if _BOOTTIME is None else time.clock_gettime_ns(_BOOTTIME)
+        return now_ns // 1000
 
     def ticks_diff(end: int, start: int) -> int:
         """Microseconds from start to end."""

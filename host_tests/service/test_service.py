@@ -6,6 +6,7 @@ import resource
 import signal
 import socket
 import sys
+import time
 import urllib.request
 
 import numpy as np
@@ -13,6 +14,7 @@ import pytest
 from zerorate.storage.places import FileStorage
 from zerorate_bench.service import run
 from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050, Physical
+from zerorate_i2c.clock import ticks_us
 from zerorate_i2c.fifo import EMPTY, Fifo
 from zerorate_i2c.mpu6050 import MPU6050
 from zerorate_tools.errors import MissingLibrary, ZerorateError
@@ -316,6 +318,11 @@ def test_systemd_hears_every_two_seconds_that_the_service_lives(board):
         board.service._alive()
         heard.append(len(board.told))
     assert heard == [1, 1, 2, 2, 3]
+
+
+def test_time_goes_on_while_the_machine_is_suspended(monkeypatch):
+    monkeypatch.setattr("time.clock_gettime_ns", {time.CLOCK_BOOTTIME: 3_600_000_007_000}.get)
+    assert ticks_us() == 3_600_000_007
 
 
 def test_a_bus_that_opens_but_is_none_leaves_no_descriptor(tmp_path):
