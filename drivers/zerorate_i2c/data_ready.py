@@ -45,6 +45,8 @@ class DataReady:
             edges = self._edges
             edge_us = self._edge_us
         self.dt_us = self._clock.ticks_diff(edge_us, self._taken_us)
+        if self.dt_us < 0:  # more than 9 minutes by a board's clock, which wraps after 18
+            self.dt_us &= 0x3FFFFFFF
         period_us = self.imu.period_us
         passed = (self.dt_us + period_us // 2) // period_us
         self.missed += max((edges - self._taken) & 0xFFFF, passed) - 1

@@ -203,7 +203,9 @@ class Fifo:
         self.imu.write_register(_USER_CTRL, _FIFO_RESET)
         self.imu.write_register(_USER_CTRL, _FIFO_ON)
         gone_us = self.imu.clock.ticks_diff(now_us, self.newest_us)
-        self.lost += max(0, gone_us // self.imu.period_us)
+        if gone_us < 0:  # more than 9 minutes by a board's clock, which wraps after 18
+            gone_us &= 0x3FFFFFFF
+        self.lost += gone_us // self.imu.period_us
         self._gap_us += gone_us
         self._begin(now_us)
         self._gap_us -= self.imu.clock.ticks_diff(now_us, self.newest_us)

@@ -75,6 +75,7 @@ class TestEdges:
             ([5000, 10000], 10000, 1),
             ([1000, 2000, 3000], 3000, 2),
             ([4999], 4999, 0),
+            ([600_000_000 - (1 << 30)], 600_000_000, 59_999),  # a clock that wraps
         ],
     )
     def test_what_was_missed_is_the_more_of_edges_and_time(self, edge, times_us, dt_us, missed):

@@ -120,11 +120,11 @@ def test_other_flags_are_none(by_hand, flag):
     assert by_hand.fifo.overflows == 0
 
 
-def test_nothing_lost_is_not_less_than_nothing(by_hand):
-    by_hand.frames(2)
+def test_ten_minutes_are_ten_minutes_by_a_clock_that_wraps(by_hand):
+    by_hand.frames(1)
     by_hand.read(15000)
-    by_hand.fifo._lose(4000)  # before the newest delivered
-    assert by_hand.fifo.lost == 0
+    by_hand.fifo._lose(by_hand.fifo.newest_us + 600_000_000 - (1 << 30))
+    assert (by_hand.fifo.lost, by_hand.fifo._gap_us) == (60_000, 599_995_000)
 
 
 def test_a_read_back_is_told_with_the_next_frame_though_nothing_waits(make):
