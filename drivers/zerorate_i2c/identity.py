@@ -5,6 +5,7 @@ from .parts import part_by_id, part_by_name
 const = int  # on a board the compiler itself reads const(...)
 
 _WHO_AM_I = const(0x75)
+_EBUSY = const(16)
 _ENODEV = const(19)
 
 
@@ -17,6 +18,8 @@ def identify(registers, name):
     try:
         who_am_i = registers.read_register(_WHO_AM_I)
     except OSError as error:
+        if error.args[0] == _EBUSY:  # Linux, of one that another has
+            raise
         text = "nothing answers at I2C address 0x{:02x}, no id was read: check power, wiring, AD0{}"
         raise OSError(error.args[0], text.format(registers.address, scanned(registers.i2c)))
     row = part_by_id(who_am_i) if name is None else part_by_name(name)

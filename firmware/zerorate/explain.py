@@ -1,11 +1,13 @@
 """Says in words what is being learned, or why nothing is."""
 
-from .machine_code import chosen
+from .machine_code import chosen, unload
 
 # layout: names that a board's own compiler reads
 const = int
 # layout: The corrector's state
 _COUNTS = const(8)
+_ELAPSED_US = const(16)
+_WINDOW_N = const(17)
 _STILLNESS = const(50)
 _SEGMENT_WINDOWS = const(52)
 _OUT_Q8 = const(62)
@@ -71,6 +73,8 @@ def explain(corrector):
     faults = ["%d %s" % (s[_COUNTS + i], FAULTS[i]) for i in range(1, 8) if s[_COUNTS + i]]
     if faults:
         lines.append("Not learned from: " + ", ".join(faults) + ".")
+    if 0 < s[_ELAPSED_US] * sensor.odr_hz < s[_WINDOW_N] * 1e4:  # a hundredth of what it should be
+        lines.append("dt_us is less than a hundredth of a period: give microseconds.")
     if not sensor.accel_lsb_per_g:
         lines.append("Without an accelerometer a slow turn cannot be told from a bias.")
     if not sensor.temp_lsb_per_degc:
@@ -79,7 +83,11 @@ def explain(corrector):
         from .explain_sources import explain_sources
 
         lines.extend(explain_sources(corrector))
-    lines.extend(corrector.left_out)
+    if corrector.left_out:
+        from .making import why_without
+
+        unload("zerorate", "making")
+        lines.extend(["Left out: %s." % why_without(part) for part in corrector.left_out])
     if corrector.schedule is not None:
         lines.append(saving_text(corrector.schedule, sensor))
     lines.extend(runs())

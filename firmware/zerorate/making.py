@@ -58,10 +58,18 @@ def join(corrector, part, wanted, document, start_dps):
             from .others import join as join_others
 
             join_others(corrector)
-        except (ImportError, ValueError) as why:
-            if isinstance(why, ImportError):
-                text = "%s is not on this board; zerorate flash --with %s sends it"
-                why = ImportError(text % (part, part))
+        except ImportError:
             if wanted:
-                raise why
-            corrector.left_out.append("Left out: %s." % why)
+                raise ImportError(why_without(part))
+            corrector.left_out.append(part)  # its sentence would take heap for ever
+        except ValueError as why:
+            if wanted:
+                raise
+            corrector.left_out.append(str(why))
+
+
+def why_without(left_out):
+    """Return the words of an entry of left_out, the name of a part or words already."""
+    if " " in left_out:
+        return left_out
+    return "%s is not on this board; zerorate flash --with %s sends it" % (left_out, left_out)

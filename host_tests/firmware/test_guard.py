@@ -74,6 +74,13 @@ def test_explain_says_which_faults_kept_it_from_learning(fault, kind, words):
     assert [corrector.source(axis) for axis in range(3)] == [0, 0, 0]
 
 
+@pytest.mark.parametrize("dt_us, said", [(10, True), (200, False), (100_000, False)])
+def test_milliseconds_given_for_microseconds_are_said(dt_us, said):
+    frames = rest(5, 1)
+    corrector, _ = play(frames, None, np.full(len(frames), dt_us))
+    assert ("give microseconds" in corrector.explain()) == said
+
+
 def test_the_noise_of_a_thermometer_ends_no_rest():
     frames = rest(60, 1, (1.0, 2.0, 3.0))
     frames[:, 3] += np.random.default_rng(2).normal(0, 88, len(frames))  # a quarter of a degree

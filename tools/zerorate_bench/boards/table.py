@@ -79,11 +79,11 @@ Cycles a sample on the emulated Pico, with the recording of the bench:
 | as bytecode | some {bytecode:,.0f} | |
 
 If the heap is too small, freeze the packages into the firmware image: in MicroPython's `ports/rp2`
-run `make FROZEN_MANIFEST=FILE`. FILE includes the board's own manifest and this project's
-`manifest.py`. The image takes 129 KB
-more of flash; all sources together take 9 KB of heap. On the emulated Pico it gave the same
-numbers in every mode, to the last bit. `zerorate bench boards` compares it if it is
-`firmware/FROZEN-1.28.0.bin` in the folder that ZERORATE_BOARDS names.
+run `make FROZEN_MANIFEST=FILE`. FILE, by its full path, has two lines:
+`include("$(PORT_DIR)/boards/manifest.py")`, and `include(...)` with the full path of this project's
+`manifest.py`. The image takes 129 KB more of flash; all sources together take 9 KB of heap. On the
+emulated Pico it gave the same numbers in every mode, to the last bit. `zerorate bench boards`
+compares it if it is `firmware/FROZEN-1.28.0.bin` in the folder that ZERORATE_BOARDS names.
 
 ## The heap of the second program
 
