@@ -3,6 +3,8 @@
 import errno
 import os
 import signal
+import subprocess
+import sys
 from array import array
 from io import FileIO
 from pathlib import Path
@@ -322,6 +324,31 @@ def test_a_read_too_long_for_blocks_and_a_missing_bus_are_refused():
         bus.readfrom_mem_into(0x68, 0x3B, bytearray(33))
     with pytest.raises(OSError):
         LinuxI2C("/dev/i2c-of-no-machine")
+
+
+HOLDER = """
+import fcntl, sys
+file = open(sys.argv[1], "r+")
+fcntl.lockf(file, fcntl.LOCK_EX, 1, 0x68)
+input(print("held", flush=True))
+"""
+
+
+def test_the_chip_of_another_program_is_said_and_the_one_beside_it_is_had(tmp_path, monkeypatch):
+    (tmp_path / "i2c-1").touch()
+    command = [sys.executable, "-c", HOLDER, str(tmp_path / "i2c-1")]
+    clock = FakeClock(chip := FakeMPU6050(), other := FakeMPU6050())
+    bus = SMBus(FakeI2C({0x68: chip, 0x69: other}))
+    monkeypatch.setattr("fcntl.ioctl", mock.Mock())
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
+    with open(tmp_path / "i2c-1", "r+") as file, subprocess.Popen(command, **pipes) as holder:
+        bus.fd = file.fileno()
+        assert holder.stdout.readline() == "held\n"
+        MPU6050(LinuxI2C(bus), 0x69, clock=clock)
+        with pytest.raises(OSError, match="^.Errno 16. another program.* has the chip at 0x68$"):
+            MPU6050(LinuxI2C(bus), clock=clock)
+        holder.communicate("\n")
+        MPU6050(LinuxI2C(bus), clock=clock)
 
 
 @pytest.mark.skipif(

@@ -259,7 +259,7 @@ def test_run_needs_the_folder_of_its_state_and_the_file_alone(serving, capsys):
     with open("learned.bin", "ab") as of_another:
         fcntl.flock(of_another, fcntl.LOCK_EX)
         assert cli.main(["run", "fake:"]) == 2
-    assert not serving.service.called and "another service" in capsys.readouterr().err
+    assert not serving.service.called and "another program" in capsys.readouterr().err
     assert cli.main(["run", "fake:"]) == 0
 
 

@@ -8,7 +8,8 @@ from array import array
 from collections.abc import Sequence
 from math import isfinite, pi
 from os import PathLike, fspath
-from os.path import exists, isfile
+from os.path import exists, isfile, realpath
+from typing import IO
 
 from zerorate import Corrector, Sensor
 from zerorate.model import EffectModel
@@ -105,11 +106,16 @@ class FloatCorrector:
         return self.corrector.bias_lsb(axis) / self._rate_lsb
 
 
+#: Files of stores by their real paths, open while this program runs: so no other has their locks.
+_HELD: dict[str, IO[bytes] | None] = {}
+
+
 def store_file(path: str | PathLike[str]) -> FileStorage:
     """The storage of a LearnedStore in a file, new or a store's own; InFile where it is another's.
 
-    A store is begun afresh where its two places are torn or rotten: it is known by the mark in
-    either of them, by its size with both written, or by no bit that was ever written.
+    So it is where another program runs with it. A store is begun afresh where its two places are
+    torn or rotten: it is known by the mark in either of them, by its size with both written, or by
+    no bit that was ever written.
     """
     store = LearnedStore(None, b"", Corrector(Sensor(100.0, 131.0)))
     slot_bytes = store.state.slot_bytes
@@ -122,7 +128,25 @@ def store_file(path: str | PathLike[str]) -> FileStorage:
     blank = len(data) <= store.end and not data.strip(b"\0\xff")
     if exists(path) and not (isfile(path) and (marked or written or blank)):
         raise InFile(path, "is no store of zerorate", do="name another file")
+    if (place := realpath(path)) not in _HELD:
+        _HELD[place] = _locked(path)
     return FileStorage(fspath(path))
+
+
+def _locked(path: str | PathLike[str]) -> IO[bytes] | None:
+    """The file, locked; None where it cannot be written, which is said when it is to be, and where
+    there are no locks. Raises InFile."""
+    try:
+        import fcntl
+
+        file = open(path, "ab")  # noqa: SIM115 (stays open)
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError as error:
+        problem, do = "another program keeps its state there", "end it, or name another file"
+        raise InFile(path, problem, do=do) from error
+    except (ImportError, OSError):
+        return None
+    return file
 
 
 def _loaded(

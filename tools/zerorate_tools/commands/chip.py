@@ -4,7 +4,7 @@ import argparse
 import errno
 import sys
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 from zerorate_i2c.settings import ACCEL_RANGES_G, GYRO_RANGES_DPS
 
@@ -218,7 +218,6 @@ def run_run(arguments: argparse.Namespace) -> None:
     if not arguments.state.parent.is_dir():
         raise InFile(arguments.state.parent, "no such folder", do="make it, or name another")
     storage = store_file(arguments.state)
-    _lock = _locked(arguments.state)
     options = _chip(arguments)
     model = _model_bytes(arguments.model) if arguments.model else b""
     fake = None
@@ -266,24 +265,6 @@ def run_run(arguments: argparse.Namespace) -> None:
             signal.signal(number, signal.default_int_handler)
     system = System(open_imu, storage, clock, say, stored_ago_s=stored_ago_s)
     Service(system, sinks or [Lines(sys.stdout)], model, str(arguments.model)).run()
-
-
-def _locked(path: Path) -> IO[bytes] | None:
-    """The file, which no other service has while it is open; None where it cannot be written, which
-    is said when it is to be. Raises InFile."""
-    import fcntl
-
-    from ..errors import InFile
-
-    try:
-        file = path.open("ab")
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError as error:
-        problem, do = "another service keeps its state there", "end it, or name another --state"
-        raise InFile(path, problem, do=do) from error
-    except OSError:
-        return None
-    return file
 
 
 def _require_settings(options: dict[str, Any]) -> None:
