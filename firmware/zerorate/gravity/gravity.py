@@ -47,7 +47,7 @@ _GRAVITY_REASON = const(49)
 _SKIPPED = const(50)
 _MEAN_ALONG_Q20 = const(51)
 _SPREAD_Q21 = const(54)
-_LEFT_OUT_Q13 = const(55)
+_LEFT_OUT_Q20 = const(55)
 _GRAVITY_LATE_US = const(58)
 # layout: The settings of the source against gravity
 _SUB_UNIT_US = const(0)
@@ -62,6 +62,7 @@ _FINE_Q8 = const(8)
 _ONE_G_LSB = const(9)
 _GRAVITY_GAP_US = const(10)
 _PUSH_Q2 = const(11)
+_TURN_Q12 = const(12)
 # layout: What a sub-unit against gravity was
 _COUNTING = const(1)
 _NOT_ONE_G = const(2)
@@ -78,6 +79,7 @@ _MOST_Q13 = const(0x7FFF)
 _FOUR_RAD_Q22 = const(0xFFFFFF)
 _MOST_Q22 = const(0x3FFFFFF)  # four times as far, in a sub-unit
 _RADIAN_Q13 = const(8192)
+_MINUTE = const(128)  # sub-units
 
 
 def clear(s: ptr32, c: ptr32):
@@ -209,8 +211,24 @@ def coupled_q13(s: ptr32, i: int, square: int) -> int:
     mean += ((along << 8) - mean) >> 5
     s[_MEAN_ALONG_Q20 + i] = mean
     along -= mean >> 8
-    s[_LEFT_OUT_Q13 + i] = ((mean >> 8) * (s[_FORCE_SUM + i] >> 1)) // square
     return (along * (s[_FORCE_SUM + i] >> 1)) // square
+
+
+def beside_q13(s: ptr32, c: ptr32, i: int) -> int:
+    """Return what the pair turns by in a sub-unit where the other axes are off, or turn for longer
+    than their mean is taken over: in proportion to gravity along the axis."""
+    turn = s[_MEAN_ALONG_Q20 + i] >> 8
+    turn = (turn if turn > 0 else 0 - turn) + c[_TURN_Q12]
+    lean = s[_FORCE_SUM + i]
+    turn = turn * ((lean if lean > 0 else 0 - lean) >> 1)
+    return turn // (1024 - (lean * lean >> 14))
+
+
+def leave_out(s: ptr32, i: int, now: int):
+    """Follow that, for it is in the offset: a mean over a minute or so."""
+    n = s[_OBSERVED + i]
+    n = n if n < _MINUTE else _MINUTE
+    s[_LEFT_OUT_Q20 + i] += ((now << 7) - s[_LEFT_OUT_Q20 + i]) // n
 
 
 def count(s: ptr32, c: ptr32, i: int, deviation: int):
@@ -218,6 +236,8 @@ def count(s: ptr32, c: ptr32, i: int, deviation: int):
     s[_COUNTED + i] += 1
     s[_OBSERVED + i] += 1
     spread(s, deviation)
+    beside = beside_q13(s, c, i)
+    leave_out(s, i, beside)
     if deviation > c[_DEAD_Q13]:
         s[_COUNTER + i] += 1
     elif deviation < -c[_DEAD_Q13]:
@@ -287,9 +307,8 @@ def judge(s: ptr32, c: ptr32, i: int):
     if s[_SIGN_TURNS + i] < 3 and c[_PUSH_Q2] or s[_OBSERVED + i] == 0:
         return
     pushed = (s[_SPREAD_Q21] * c[_PUSH_Q2]) >> 10
-    turned = clipped(s[_LEFT_OUT_Q13 + i], _RADIAN_Q13)
-    turned = turned if turned > 0 else 0 - turned
-    pushed += turned * c[_PUSH_Q2] << 2  # a turn that lasts was taken for bias
+    turned = clipped(s[_LEFT_OUT_Q20 + i] >> 7, _RADIAN_Q13)
+    pushed += turned * c[_PUSH_Q2] << 2
     if c[_PUSH_Q2] == 0:  # the literal rules
         pushed = c[_FINE_Q8] << 2
     s[_GRAVITY_QUALITY_Q8 + i] = (s[_RIPPLE_Q8 + i] << 1) + s[_STEP_Q8 + i] + pushed

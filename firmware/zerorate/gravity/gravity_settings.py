@@ -21,13 +21,15 @@ _FINE_Q8 = const(8)
 _ONE_G_LSB = const(9)
 _GRAVITY_GAP_US = const(10)
 _PUSH_Q2 = const(11)
-_GRAVITY_SETTINGS_WORDS = const(12)
+_TURN_Q12 = const(12)
+_GRAVITY_SETTINGS_WORDS = const(13)
 # layout: end
 _SHORT_GAP_US = 20000  # a hand turns by less than a tenth of a radian meanwhile
 # with what is passed over, _LATE_US at most, its product with the gain fits 31 bits
 _LONG_GAP_US = 400000
 _PASSED_OVER_US = 100000
 _MOST_TURN = 64  # of an LSB meanwhile, Q14 rad: a rate at the rail fits 31 bits
+_MOST_TURN_Q12 = 4096  # a radian a sub-unit
 # Of how far the deviations go, what a motion that pushes always the same way hides from their
 # signs: at most a tenth on simulated strides (docs/motion.md), of which one sigma is some half.
 PUSH = 16
@@ -43,12 +45,13 @@ def gravity_settings(
     dead_dps=0.03,
     coarse_dps=0.1,
     fine_dps=0.0125,
+    turning_dps=1.0,
     document=False,
 ):
     """Return the settings as array('i').
 
     units: sub-units an interval; threshold: what a counter must pass; coarse_dps, fine_dps: first
-    and smallest step. document: one step of coarse_dps, no dead band and no threshold, and by
+    and smallest step; turning_dps: one sigma of a turn about gravity, as for a rest. document: one step of coarse_dps, no dead band and no threshold, and by
     default sub-units of 0.25 s, not 0.5: it gives no numbers, and with these it errs least
     (docs/motion.md). Raises ValueError.
     """
@@ -91,6 +94,7 @@ def gravity_settings(
     c[_GRAVITY_GAP_US] = min(gap_us, _LONG_GAP_US, most_us)
     push = q8 / degree / (2048 * PUSH) / sub_unit
     c[_PUSH_Q2] = 0 if document else max(1, push.floor())
+    c[_TURN_Q12] = min((sub_unit * turning_dps * degree * 4096).floor(), _MOST_TURN_Q12)
     return array("i", c)
 
 
