@@ -191,8 +191,8 @@ _INTRODUCTION = """\
 `zerorate bench deceived --seeds {seeds}` wrote this page.
 
 Each row has {seeds} runs: ten minutes of turns that look like a bias, in any pose, at 25, 50 or
-100 Hz, with 0.03 to 0.1 dps of noise (`tools/zerorate_bench/deceived.py`). An axis is certain of a wrong
-bias while its error exceeds both 20 mdps and three of its own sigmas.
+100 Hz, with 0.03 to 0.1 dps of noise (`tools/zerorate_bench/deceived.py`). An axis is certain of a
+wrong bias while its error exceeds both 20 mdps and three of its own sigmas.
 
 | column | what it is |
 | --- | --- |
