@@ -21,11 +21,11 @@ class RateScale:
     scale-factor, cross-axis, turned-axes or several; reference: what it was measured against;
     gains: of each way to judge what was left out, above zero where it is no worse; before, after:
     RMS of what turns windows, in `unit`; fastest_dps: (3,) up to which it was seen; unseen: (3, 3)
-    bool, entries that the motion did not show; level: of p; share: how much of the matrix is
-    deployed; heading: degrees a minute lost against an attitude that was given, without and with
-    the matrix of what was left out; worse: of that, or of what was fitted, where it forbids the
-    matrix; unused: names of recordings whose attitude shows less than gravity; by_others: of
-    several recordings without a holdout, what would be deployed by all but the one named.
+    bool, entries that the motion did not show; level: of p; deployed: (3, 3) what is taken out;
+    heading: degrees a minute lost against an attitude that was given, without and with the matrix
+    of what was left out; worse: of that, or of what was fitted, where it forbids the matrix;
+    unused: names of recordings whose attitude shows less than gravity; by_others: of several
+    recordings without a holdout, what would be deployed by all but the one named.
     """
 
     matrix: np.ndarray
@@ -41,7 +41,7 @@ class RateScale:
     fastest_dps: np.ndarray
     unseen: np.ndarray
     level: float
-    share: float = 1.0
+    deployed: np.ndarray
     heading: tuple[float, float] | None = None
     worse: tuple[float, float] | None = None
     unused: tuple[str, ...] = ()
@@ -52,11 +52,6 @@ class RateScale:
         """Whether M is significant, some of it seen, and what was left out is better with it."""
         better = bool((self.gains > 0).all())
         return self.p_value < self.level and better and not self.unseen.all()
-
-    @property
-    def deployed(self) -> np.ndarray:
-        """(3, 3) of the matrix, what is taken out."""
-        return self.share * self.matrix
 
     @property
     def confirmed(self) -> bool:
@@ -86,8 +81,9 @@ def seen_in_words(before: float, unit: str) -> str:
     return f"gravity sees {before:.2f} {unit}, the device's own acceleration among it"
 
 
-#: Posterior sigma of an entry above which the motion did not show it: a data sheet's 0.5 %.
-UNSEEN = 0.005
+#: Sigma of an entry above which the motion did not show it, a data sheet's 0.5 %; of an entry that
+#: is larger, as of axes that are turned, a third of it.
+UNSEEN, _CLEAR = 0.005, 1 / 3
 #: Of devices without errors, so many may be said to have one.
 _LEVEL = 1 / 200
 #: By how much more may be left and be no worse, as the loop's figures count harm. An attitude given
@@ -156,8 +152,8 @@ def _by_others(
     names = statements.keys() if len(statements) > 1 else ()
     others = {name: [n for n in names if n != name] for name in names}
     devices = {name: device_of([statements[n] for n in rest]) for name, rest in others.items()}
-    shares = {name: d.share([headings[n] for n in others[name]]) for name, d in devices.items()}
-    return {name: (shares[name] * d.entries).reshape(3, 3) for name, d in devices.items()}
+    kept = {name: d.kept([headings[n] for n in others[name]]) for name, d in devices.items()}
+    return {name: (kept[name] @ d.entries).reshape(3, 3) for name, d in devices.items()}
 
 
 def _by_windows(train: list[Moving], holdout: list[Moving]) -> RateScale | None:
@@ -168,15 +164,15 @@ def _by_windows(train: list[Moving], holdout: list[Moving]) -> RateScale | None:
     check_one_device(list(statements.items()))
     device = device_of(list(statements.values()))
     headings = {f.moving.name: f.heading for f in fitted}
-    share = device.share(list(headings.values()))
+    kept = device.kept(list(headings.values()))
     entries, covariance, shown = device.entries, device.covariance, device.shown
     # small sizes are the better guess; how far off it is, is not said as if they were known
     wide = device_of(list(statements.values()), large=True)
     deviation = np.sqrt(np.diag(wide.covariance) + (wide.entries - entries) ** 2)
     ways = [way for m in holdout for way in m.measured]
     held = [f for f in (beside(m, matrix) for m in ways) if f is not None]
-    left_out = list(_folds(fitted, matrix, share))
-    judged: list[_Judged] = [(f, None, share * entries) for f in held] or left_out
+    left_out = list(_folds(fitted, matrix, kept))
+    judged: list[_Judged] = [(f, None, kept @ entries) for f in held] or left_out
     if not judged:
         return None
     gain, predicted = (_gain(some, matrix) for some in (judged, left_out))
@@ -189,7 +185,8 @@ def _by_windows(train: list[Moving], holdout: list[Moving]) -> RateScale | None:
         for bare in (True, False)
     )
     fastest = np.degrees(np.max([np.abs(f.moving.rate).max(axis=0) for f in fitted], axis=0))
-    unseen = np.sqrt(np.diag(np.linalg.pinv(shown.normal + _FAINT))) > UNSEEN
+    sigma = np.sqrt(np.diag(np.linalg.pinv(shown.normal + _FAINT)))
+    unseen = sigma > np.maximum(UNSEEN, _CLEAR * np.abs(entries))
     return RateScale(
         matrix=entries.reshape(3, 3),
         deviation=deviation.reshape(3, 3),
@@ -197,7 +194,7 @@ def _by_windows(train: list[Moving], holdout: list[Moving]) -> RateScale | None:
         # takes the noise for even, which a few bouts of a hand are not: parts left out must agree.
         p_value=float(np.exp(-max(min(device.nats, predicted), 0.0))),
         level=0.0 if all(f.moving.planar and f.moving.given is None for f in fitted) else _LEVEL,
-        share=share,
+        deployed=(kept @ entries).reshape(3, 3),
         kind=_kind(entries, covariance),
         reference=reference,
         gains=np.array([gain, _NO_WORSE[reference] * before - after]),
@@ -215,14 +212,14 @@ def _by_windows(train: list[Moving], holdout: list[Moving]) -> RateScale | None:
 _FAINT = np.eye(MATRIX) * 1e-2
 
 
-def _folds(fitted: list[Fitted], matrix: np.ndarray, share: float) -> Iterator[_Judged]:
+def _folds(fitted: list[Fitted], matrix: np.ndarray, kept: np.ndarray) -> Iterator[_Judged]:
     """Each recording's part held out, with the entries that all other parts show."""
     for k in range(FOLDS):
         left = [f for f in fitted if (f.folds == k).any() and (f.folds != k).any()]
         if left:
             said = by_recording((f, f.without(matrix, k)) for f in fitted)
             entries = device_of(list(said.values())).entries
-            yield from ((f, k, share * entries) for f in left)
+            yield from ((f, k, kept @ entries) for f in left)
 
 
 def _gain(judged: Iterable[_Judged], matrix: np.ndarray) -> float:

@@ -63,9 +63,10 @@ class Device:
     weight: np.ndarray
     cases: Sequence["_Case"]
 
-    def share(self, headings: Sequence[np.ndarray]) -> float:
-        """The largest share, 0 to 1, of the entries that surely lessens the heading lost in the
-        recordings seen. headings: (9, 9) each, mean square of heading by entries.
+    def kept(self, headings: Sequence[np.ndarray]) -> np.ndarray:
+        """(9, 9) of the entries what is deployed: all that heading does not see, and of the rest
+        the largest share, 0 to 1, that surely lessens the heading lost in the recordings seen.
+        headings: (9, 9) each, mean square of heading by entries.
 
         With d taken out of M, the mean square of heading grows where `d Q M < d Q d / 2`; M is
         each recording's own, told by its windows and by the device's entries.
@@ -74,8 +75,11 @@ class Device:
         less, square = np.transpose([c.along(pulls) for c in self.cases])
         mean = self.weight @ less
         sigma = np.sqrt(self.weight @ (square + less**2) - mean**2)
-        size = sum(pull @ self.entries for pull in pulls)
-        return float(np.clip(2.0 * (mean - _SURE * sigma) / max(size, 1e-300), 0.0, 1.0))
+        every = np.sum(headings, axis=0)
+        size = max(self.entries @ every @ self.entries, 1e-300)
+        share = np.clip(2.0 * (mean - _SURE * sigma) / size, 0.0, 1.0)
+        seen = np.linalg.pinv(every, rcond=1e-6, hermitian=True) @ every
+        return np.eye(MATRIX) - (1.0 - share) * seen
 
 
 @dataclass(frozen=True)
