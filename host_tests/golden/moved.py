@@ -115,7 +115,7 @@ def moved():
         device = device_of(statements, large)
         names = ("entries", "covariance", "nats", "weight")
         parts.append((f"device {large}", {n: getattr(device, n) for n in names}))
-        parts.append((f"share {large}", {"": device.share(headings)}))
+        parts.append((f"deployed {large}", {"": device.kept(headings) @ device.entries}))
     rng = np.random.default_rng(1)
     late = [
         (np.column_stack([-0.003 * w + rng.normal(0, 0.02, 400), w]), 1.0)

@@ -99,7 +99,7 @@ def _scale(unseen):
     matrix, lsb = np.arange(9.0).reshape(3, 3) / 1000, np.array([400.0, 300.0, 200.0])
     return RateScale(
         *(matrix, matrix / 10 + 1e-4, 1e-9, "scale-factor+cross-axis", "gravity", np.ones(2)),
-        *(2.0, 0.5, "degrees a minute", 40, lsb, unseen & (matrix > 0.0), 0.01, 0.8),
+        *(2.0, 0.5, "degrees a minute", 40, lsb, unseen & (matrix > 0.0), 0.01, 0.8 * matrix),
     )
 
 
