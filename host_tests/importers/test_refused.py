@@ -83,7 +83,7 @@ LISTS = pd.DataFrame({"t_s": np.arange(300) / 100, "pulse": 70, "gyro": "[0.8, -
         ("t_s,gx_dps,gy_dps,gz_dps,ax,ay,az\n0,1,1,1,2.5,2.5,0", {}, "--accel-unit m/s2 [^-]*$"),
         (table(500).assign(az_g=0.1), {}, "map other columns, or leave it out by --map ax=none"),
         (table(500).rename(columns={"t_s": "min.timestamp"}), {}, r"--time-unit s \(100 Hz\)"),
-        (table(500).assign(t_s=TENS, clock_ms=TENS), {}, "--map t_us=t_s:ms, or --map t_us=clock_"),
+        (table(500).assign(t_s=TENS, clock_ms=TENS), {}, "--map t_us=t_s:ms, or map .clock_"),
         (table(900).assign(t_s=CLOCK), {}, "write colons"),
         (table(500).rename(columns={"t_s": "time"}).assign(time="May 1st, at noon"), {},
          "no time can be read from column 'time'; .*--hz N"),

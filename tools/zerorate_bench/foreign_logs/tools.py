@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from .world import AFTERNOON, STANDARD_GRAVITY, Logs, World, table, text, zipped
+from .world import AFTERNOON, STANDARD_GRAVITY, Logs, World, csv, plain, table, text, zipped
 
 log = Logs(__name__, samples=1000)
 # fmt: off
@@ -260,3 +260,41 @@ log.text("a phone's JSON of two lists, {gyroscope: [], accelerometer: []}",
     _lists_of_two, "in.json", words="--time-unit ms")
 log.csv("iNav and Android mix: gravity taken away, and no word of it",
     lambda w: table("t_s,g{xyz}_dps,a{xyz}_m/s2", w.t_s, w.dps, w.mps2 - [0, 0, STANDARD_GRAVITY]))
+
+
+def _beside_each_other(world: World) -> pd.DataFrame:
+    """Acceleration at half the rate, each channel behind a time of its own."""
+    force = [table(f"X[s],Acc 1.{axis} [g]", world.t_s[::2], of[::2])
+        for axis, of in zip("XYZ", world.g.T)]
+    rate = [table(f"X[s],Gyro 1.{axis} [deg/s]", world.t_s, of)
+        for axis, of in zip("XYZ", world.dps.T)]
+    return pd.concat([*force, *rate], axis=1)
+
+
+log.csv("Delsys: a time before each channel, of two rates", _beside_each_other)
+
+
+def _realsense(world: World) -> str:
+    names = "Stream Type,F#,HW Timestamp (ms),Backend Timestamp(ms),Host Timestamp(ms),3DOF_{xyz}"
+    at = world.whole(1e6, 5_000_000), *[world.whole(1e3, 1_700_000_000_000)] * 2
+    tables = [table(names, world.each(sensor), world.count, *at, of)
+        for sensor, of in (("Accel", world.mps2), ("Gyro", world.rad))]
+    return "".join(f"\n\n{csv(one)}" for one in tables)
+
+
+log.text("RealSense, rs-convert: two tables in one, microseconds called ms", _realsense, "in.csv",
+    words="--gyro-unit rad/s")
+
+
+def _long(world: World) -> pd.DataFrame:
+    of = {"accelerometer": world.mps2, "gyroscope": world.rad}
+    each = [table("time,sensor,axis,value", world.t_s, world.each(name), world.each(axis), column)
+        for name, three in of.items() for axis, column in zip("xyz", three.T)]
+    return pd.concat(each)
+
+
+log.csv("a long table by sensor and axis: time,sensor,axis,value", _long,
+    words="--gyro-unit rad/s")
+log.csv("two sensors under a heading: label IMU1, IMU2",
+    lambda w: pd.concat([plain(w).assign(label="IMU1"), plain(w).assign(label="IMU2", gx_dps=9)])
+        .sort_values("t_s", kind="stable"))

@@ -32,7 +32,7 @@ from .samples.conversion import (
 )
 from .samples.doubts import doubts
 from .samples.gather import Gathered, gathered
-from .tables.sensors import told_apart
+from .tables.sensors import by_own_times, told_apart
 from .tables.table import Table
 
 Advance = Callable[[float], None]
@@ -196,7 +196,7 @@ def _opened(
 
 
 def _gathered(table: Table, path: Path, how: _How, folder: Path | None) -> _Source:
-    table, instance = told_apart(table, how.instance, path)
+    table, instance = told_apart(by_own_times(table), how.instance, path)
     options = how.options
     plan = planned(
         *(table, how.mapping, path),

@@ -13,14 +13,14 @@ _NUMBER = r"\d?"
 _CHIP = r"(?:(?:bm[agi]|i[ai]m|icm|lis|lsm|mpu)\d[a-z0-9]*?)?"
 _GYRO = re.compile(
     r"(?:.*(?:gyroscope|gyrorotation|gyro|gyr|angularvelocity|ang(?:le|ular)?rate|angl?vel|rotationrate|omega)"
-    rf"\d?{_CHIP}(?:uncalibrated|uncal|calibrated|corrected|unfilt|adc|raw|rad|data|rate|dps|values?|v"
+    rf"\d?{_CHIP}(?:uncalibrated|uncal|calibrated|corrected|unfilt|adc|raw|rad|data|rate|dps|dof|values?|v"
     r"|static|noise){0,2}"
     r"|(?:.*imu\d*)?(?:gy|[wg]|wb|pqr))"
     + f"{_AXIS}{_MADE}{_NUMBER}$|^{_AXIS}(?:gyroscope|gyro|gyr){_MADE}$"
 )
 _ACCEL = re.compile(
     r"(?:.*(?:accelerometer|acceleration|accel|acce|accl|acc|specificforce)"
-    rf"\d?{_CHIP}(?:uncalibrated|uncal|calibrated|smooth|adc|raw|data|ms2|m?g|values?|v|vector|ln|wr|static"
+    rf"\d?{_CHIP}(?:uncalibrated|uncal|calibrated|smooth|adc|raw|data|dof|ms2|m?g|values?|v|vector|ln|wr|static"
     r"|noise|includinggravity){0,2}"
     r"|(?:.*imu\d*)?(?:ac?|gf|fb?))"
     + f"{_AXIS}{_MADE}{_NUMBER}$|^{_AXIS}(?:accelerometer|accel|accl|acc){_MADE}$"
@@ -159,6 +159,13 @@ def time_columns(names: list[str]) -> list[str]:
     """The columns that look like time stamps; T (°C) is none."""
     found = [name for name in names if _TIME.match(spelled(name))]
     return [name for name in found if unit_in_name("temp", name) in (None, RAW)]
+
+
+def clocks(names: list[str]) -> list[str]:
+    """The columns that look like the time of anything: acc_time, and X[s].1, which comes twice."""
+    own = {name: re.sub(r"\.\d+$", "", name) for name in names}
+    found = {*time_columns([*own.values()]), *in_units_of_time([*own.values()])}
+    return [n for n, of in own.items() if of in found or re.search("time(?:stamp)?$", spelled(of))]
 
 
 def is_step(name: str) -> bool:

@@ -129,8 +129,8 @@ def _refuse_other_times(
     meant, other = _as_another_time(column, table) or (unit, "")
     if meant != unit and not time.plus:
         problem = f"column {column!r} in {unit} does not go on as {other!r} does"
-        words = f"{map_words(TIME, column, meant)}, or {map_words(TIME, other)}"
-        raise BadRecording(path, problem, do=f"give {words}")
+        do = f"give {map_words(TIME, column, meant)}, or map {other!r} instead"
+        raise BadRecording(path, problem, do=do)
     if unit == "s" and column not in table.calendar and are_digits_of_clock(first[column]):
         problem = f"column {column!r} goes from 59 to 100: the digits of a clock, as 141759.5"
         raise BadRecording(path, problem, do="write colons between them, as 14:17:59.5")

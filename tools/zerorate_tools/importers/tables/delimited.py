@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,9 +16,10 @@ import pyarrow.csv
 
 from ...errors import BadRecording
 from ...recordings.text import line_blocks, rows_of
+from ..columns.names import gyro_groups
 from ..report import cut_words
 from .sentences import COMMENTS, Rows
-from .sniffing import DAY, Form, sniffed, without_arrows
+from .sniffing import DAY, MOST_WORDS, Form, sniffed, without_arrows
 from .table import Chunk, Table
 
 if TYPE_CHECKING:
@@ -36,6 +38,8 @@ def delimited(path: Path, advance: Callable[[float], None] = lambda n: None) -> 
     advance: called with the bytes of the file that were read since it was called last.
     """
     form = sniffed(path)
+    if form.lone and not gyro_groups(form.names):
+        form = replace(form, words={**form.words, **_all_words(path, form)})
 
     def chunks(names: list[str]) -> Iterator[Chunk]:
         yield from _chunks(path, form, names, table.dropped, advance)
@@ -49,6 +53,21 @@ def delimited(path: Path, advance: Callable[[float], None] = lambda n: None) -> 
         said_hz=form.said_hz,
     )
     return table
+
+
+def _all_words(path: Path, form: Form) -> dict[str, list[str]]:
+    """Of columns of one word, as far as was looked, those with more in all, and these."""
+    found: dict[str, dict[str, None]] = {name: {} for name in form.lone}
+    skip = form.skip
+    for lines in line_blocks(path, form.encoding, lambda n: None, _BLOCK_BYTES):
+        odd = _OddLines(skip)
+        rows = _rows(path, _changed(lines, form), form, [*form.lone], odd)
+        for name in form.lone:
+            words = _decoded(pc.unique(rows.column(name).combine_chunks()))
+            found[name].update(dict.fromkeys(word.strip() for word in words if word))
+        skip = 0
+    names_again = {name: of for name, of in found.items() if not of.pop(name, None)}
+    return {n: [*of] for n, of in names_again.items() if 2 <= len(of) <= MOST_WORDS}
 
 
 def _chunks(

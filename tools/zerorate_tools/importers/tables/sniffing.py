@@ -65,7 +65,8 @@ class Form:
     """How a text holds its table. names: of the columns, as numbers from 1 where nothing names
     them; skip: lines before the first row; words: by column, where its cells are few words;
     arrows: a clock stands before lines; kinds: of lines of words and numbers;
-    scales: by column, what its numbers are multiplied by; units: what stands behind them."""
+    scales: by column, what its numbers are multiplied by; units: what stands behind them;
+    lone: columns of one word, as far as was looked."""
 
     names: list[str]
     skip: int
@@ -80,6 +81,7 @@ class Form:
     kinds: tuple[Kind, ...] = ()
     scales: dict[str, float] = field(default_factory=dict)
     units: dict[str, str] = field(default_factory=dict)
+    lone: frozenset[str] = frozenset()
 
 
 def sniffed(path: Path) -> Form:
@@ -185,6 +187,7 @@ def _table_in(lines: list[str], every: list[str], encoding: str, path: Path) -> 
     units = {name: unit for name, unit in zip(names, found_units) if unit}
     first = [cell.strip().removesuffix(unit) for cell, unit in zip(first, found_units)]
     dates = frozenset(name for name, cell in zip(names, first) if DATE.match(cell.strip()))
+    words = _words(every[skip:], names, delimiter, dates | {*units})
     return Form(
         names,
         skip,
@@ -192,8 +195,9 @@ def _table_in(lines: list[str], every: list[str], encoding: str, path: Path) -> 
         encoding,
         decimal_comma=any(_DECIMAL_COMMA.match(c.strip()) for c in first),
         dates=dates,
-        words=_words(every[skip:], names, delimiter, dates | {*units}),
+        words={name: of for name, of in words.items() if len(of) > 1},
         units=units,
+        lone=frozenset(name for name, of in words.items() if len(of) == 1),
         note=note,
         said_hz=_rate_said(lines[:skip]),
     )
@@ -221,7 +225,7 @@ def _words(
     """
     rows = [_cells(line, delimiter) for line in lines[:_SEEN]]
     rows = [[cell.strip() for cell in row] for row in rows if len(row) == len(names)]
-    out = {}
+    out: dict[str, list[str]] = {}
     for name, cells in zip(names, zip(*rows)):
         counts = Counter(cells)
         most = 0.8 * len(cells)
@@ -229,7 +233,7 @@ def _words(
             continue  # with the empty one, so many words at most
         kinds = [cell for cell in counts if cell and not _numbers([cell], delimiter)]
         found = sum(counts[kind] for kind in kinds)
-        if name not in dates and found > most and 2 <= len(kinds) <= MOST_WORDS:
+        if name not in dates and found > most and 1 <= len(kinds) <= MOST_WORDS:
             out[name] = kinds
     return out
 
