@@ -230,6 +230,7 @@ def test_one_turn_between_two_rests_is_told_by_gravity_before_and_after_it(recor
 
 
 @pytest.mark.parametrize(("precision", "share"), [(1e4, 0.0), (1e8, 1.0)])
-def test_only_entries_that_surely_lessen_the_heading_lost_are_deployed(precision, share):
+def test_of_entries_that_heading_sees_those_are_deployed_that_surely_lessen_it(precision, share):
     said = Shown(np.eye(9) * precision, np.eye(3).ravel() * 0.01 * precision)
-    assert device_of([said]).share([np.eye(9)]) == share
+    seen = np.diag([0.0, *np.ones(8)])
+    assert device_of([said]).kept([seen]) == pytest.approx(np.eye(9) - (1 - share) * seen)
