@@ -311,6 +311,21 @@ def test_systemd_is_told_by_its_socket_with_a_file_or_without(tmp_path, monkeypa
     notify("READY=1")
 
 
+@pytest.mark.parametrize("register, stuck", [(0x3A, 0x10), (0x72, 0x00)])
+def test_a_chip_whose_fifo_is_broken_is_said_and_opened_anew(board, monkeypatch, register, stuck):
+    board.live(5)
+    samples, read = board.service.samples, board.chip.read
+    with monkeypatch.context() as patch:
+        patch.setattr(board.chip, "read", lambda at: stuck if at == register else read(at))
+        board.live(100)
+    assert board.said[1:] == [
+        "bus: the chip gave no good sample for a minute; trying again every second"
+    ]
+    assert board.service.samples == samples
+    board.live(5)
+    assert board.service.samples > samples + 100
+
+
 def test_systemd_hears_every_two_seconds_that_the_service_lives(board):
     heard = []
     for wait_us in (0, 1_999_999, 1, 1, 2_500_000):

@@ -1,5 +1,6 @@
 """Read, learn, keep, publish: one loop that outlives the bus, the disk and its own death."""
 
+import errno
 import json
 import math
 import os
@@ -22,6 +23,7 @@ from .publish import Sink
 
 _LEAST_PAUSE_MS = 10
 _BUS_PAUSE_MS = 1000
+_SILENT_MS = 60_000  # the driver restarts a chip much sooner
 _ALIVE_US = 2_000_000
 _RETRY_S = 60
 _OTHER_MODEL = "name another model, or leave out --model"
@@ -80,6 +82,7 @@ class Service:
         self.notify_failures = 0
         self.samples = 0
         self.t_us = 0
+        self._in_vain_ms = 0
         self._imu: Any = None
         self._fifo: Any = None
         self._corrector: Any = None
@@ -98,18 +101,23 @@ class Service:
         try:
             if self._imu is None:
                 self._open()
+            if self._in_vain_ms > _SILENT_MS:
+                raise OSError(errno.ETIMEDOUT, "the chip gave no good sample for a minute")
             status = self._fifo.read(self._sample)
         except OSError as error:
             self._lose(error)
             return
         if status == EMPTY:
-            self.system.clock.sleep_ms(max(_LEAST_PAUSE_MS, self._imu.period_us // 500))
+            pause_ms = max(_LEAST_PAUSE_MS, self._imu.period_us // 500)
+            self.system.clock.sleep_ms(pause_ms)
+            self._in_vain_ms += pause_ms
             return
         dt_us = self._passed_us()
         self.t_us += dt_us
         raw_lsb = self._sample[4:]
         if self._corrector.update(self._sample, dt_us, status):
             self.samples += 1
+            self._in_vain_ms = 0
             self._publish(raw_lsb)
         self._keep()
 
@@ -213,6 +221,7 @@ class Service:
         if self._imu is not None or not self.bus_failures:
             self.system.say(f"bus: {os_error_in_words(error)}; trying again every second")
         self.bus_failures += 1
+        self._in_vain_ms = 0
         if self._corrector is not None:
             self._corrector.take_back()
         close = getattr(getattr(self._imu, "i2c", None), "close", None)
