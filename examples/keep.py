@@ -25,11 +25,10 @@ from zerorate_i2c.fifo import EMPTY, Fifo
 store = LearnedStore(FileStorage("learned.bin"), imu.binding, learner)
 print(store.in_words(store.load()))
 corrector.keep()  # what was read is right
-schedule = SaveSchedule(store, 3, tolerance=13, corrector=learner)  # 0.1 dps at 131 LSB/dps
+schedule = SaveSchedule(store, 3, tolerance=round(imu.gyro_lsb_per_dps / 10), corrector=learner)
 sample = array("i", [0] * 7)
 bias_lsb = array("i", [0] * 3)
 fifo = Fifo(imu)
-elapsed_ms = 0
 while True:
     try:
         status = fifo.read(sample)
@@ -43,12 +42,11 @@ while True:
         continue
     if corrector.update(sample, fifo.dt_us, status):
         pass  # sample[4], sample[5] and sample[6] are the rates without their bias: use them here
-    elapsed_ms += fifo.dt_us // 1000
     if learner.learned:  # and not of this rest alone
         for axis in range(3):
             bias_lsb[axis] = round(learner.bias_lsb(axis))
     saves = schedule.saves
-    if schedule.offer(learner.state, bias_lsb, elapsed_ms // 1000):
+    if schedule.offer(learner.state, bias_lsb, int(fifo.frames / imu.odr_hz)):
         print("kept")
     elif schedule.saves > saves:
         print("learned.bin: cannot be written; is there room?")

@@ -31,7 +31,7 @@ while True:
         for axis in range(3):
             sums[axis] += raw[axis]
             sums[3 + axis] += sample[4 + axis]
-    if count == imu.odr_hz:
+    if count >= imu.odr_hz:
         means_dps = [value / count / imu.gyro_lsb_per_dps for value in sums]
         rates = "before {:+.3f} {:+.3f} {:+.3f}  after {:+.3f} {:+.3f} {:+.3f} dps"
         print(rates.format(*means_dps))

@@ -19,7 +19,7 @@ learner = Corrector(Sensor(*imu.scales))
 store = LearnedStore(store_file("learned.bin"), imu.binding, learner)
 print(store.in_words(store.load(imu.kept_power)))
 corrector = CheckedCorrector(learner)
-schedule = SaveSchedule(store, 3, tolerance=13)  # 0.1 dps at 131 LSB/dps
+schedule = SaveSchedule(store, 3, tolerance=round(imu.gyro_lsb_per_dps / 10))  # 0.1 dps
 bias_lsb = array("i", [0] * 3)
 fifo = Fifo(imu)
 sample = array("i", [0] * 7)
@@ -43,7 +43,7 @@ while True:
         for axis in range(3):
             sums[axis] += raw[axis]
             sums[3 + axis] += sample[4 + axis]
-    if count == imu.odr_hz:
+    if count >= imu.odr_hz:
         means_dps = [value / count / imu.gyro_lsb_per_dps for value in sums]
         rates = "before {:+.3f} {:+.3f} {:+.3f}  after {:+.3f} {:+.3f} {:+.3f} dps"
         print(rates.format(*means_dps))

@@ -29,7 +29,7 @@ while True:
     corrector.update(sample, fifo.dt_us, status)
     turned[1] += sample[6] * fifo.dt_us
     count += 1
-    if count == imu.odr_hz:
+    if count >= imu.odr_hz:
         yaw_deg = [value / 1e6 / imu.gyro_lsb_per_dps for value in turned]
         print("yaw without {:+.2f}  with {:+.2f} deg".format(*yaw_deg))
         count = 0

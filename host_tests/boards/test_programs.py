@@ -281,8 +281,8 @@ def test_power_cut_while_a_part_is_put_in_place_leaves_a_firmware_that_runs(pico
 def test_what_the_own_program_learned_is_watched_and_not_replaced(
     pico, programs, start, tmp_path, capsys
 ):
-    explains = "    if count == imu.odr_hz:\n        print(corrector.corrector.explain())\n"
-    console = start(programs[0].replace("    if count == imu.odr_hz:\n", explains))
+    explains = "    if count >= imu.odr_hz:\n        print(corrector.corrector.explain())\n"
+    console = start(programs[0].replace("    if count >= imu.odr_hz:\n", explains))
     learned(console)
     console.close()
     picture = tmp_path / "own.png"

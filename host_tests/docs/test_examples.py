@@ -60,10 +60,12 @@ def takes_the_bias_off(printed):
 
 @pytest.fixture
 def run(repository, find_runtime):
-    """run(example, files, scl, sda, interrupt, seconds) -> the result on a board at rest."""
+    """run(example, files, scl, sda, interrupt, seconds, setup) -> the result on a board at rest."""
 
-    def run(example, files=(), scl=5, sda=4, interrupt=6, seconds=30):
-        text = (repository / "examples" / example).read_bytes()
+    def run(example, files=(), scl=5, sda=4, interrupt=6, seconds=30, setup=b""):
+        text = (
+            (repository / "examples" / example).read_bytes().replace(b"sda=4)", b"sda=4%b)" % setup)
+        )
         return find_runtime("x86").run(
             HERE / "on_board.py",
             ["main.py", seconds, scl, sda, interrupt],
@@ -78,7 +80,7 @@ def run(repository, find_runtime):
 
 class TestOnABoard:
     def test_four_wires_show_the_rates_before_and_after(self, run):
-        result = run("main.py", interrupt=-1)
+        result = run("main.py", interrupt=-1, setup=b", odr_hz=150")  # a thousand by seven
         assert len(rows(result.stdout)) == 29, result.stderr
         takes_the_bias_off(result.stdout)
 
