@@ -197,6 +197,18 @@ MESSAGES = [{"Timestamp": 50 * n, "ArrayAcc": 5 * [DOWN], "ArrayGyro": XYZ[5 * n
             for n in range(10)]  # fmt: skip
 SENSORS = [{"name": f"gyr{axis}", "units": "deg/s"} for axis in "XYZ"]
 EDGE_IMPULSE = {"interval_ms": 10, "sensors": SENSORS, "values": THREE.tolist()}
+SCALED = [f"Scaled. Acc (mg) [ 000.1, -00.2, 998.0 ], Gyr (DPS) [ {x}, {y}, {z} ]"
+          for x, y, z in THREE]  # fmt: skip
+UNIT_AND_NAME = [f"LSM6DSL [acc/mg]:  1, 2, 998\nLSM6DSL [gyro/mdps]:  {x}, {y}, {z}"
+                 for x, y, z in 1e3 * THREE]  # fmt: skip
+HELD = np.rint(1e4 * THREE).astype(int)
+HELD[1::3, 1] = HELD[:-1:3, 1]  # which is not said again
+DEVICE = [f"    Event code {n + 3} (ABS_R{axis})\n      Value   9\n      Resolution   10000"
+          for n, axis in enumerate("XYZ")]  # fmt: skip
+DEVICE += [f"Event: time 5.01, type {kind}, value {value}" for i, row in enumerate(HELD)
+           for kind, value in (("4 (EV_MSC), code 5 (MSC_TIMESTAMP)", 10_000 * i),
+           *((f"3 (EV_ABS), code {n + 3} (ABS_R{axis})", row[n]) for n, axis in enumerate("XYZ")
+             if not i or row[n] != HELD[i - 1, n]))]  # fmt: skip
 COUNTED, BY_NUMBER = Options(hz=100.0), "t_us=1:s gx=2:dps gy=3:dps gz=4:dps"
 
 
@@ -232,14 +244,19 @@ COUNTED, BY_NUMBER = Options(hz=100.0), "t_us=1:s gx=2:dps gy=3:dps gz=4:dps"
         ([HEAD.replace("g", "imu2_g"), *ROWS], "", None, 0),
         ([json.dumps({"Meas": {"IMU6": MESSAGES}})], "", None, 0),
         ([json.dumps({"protected": {}, "payload": EDGE_IMPULSE})], "", None, 0),
+        ([f"{row};" for row in ROWS], BY_NUMBER, None, 0),
+        (SCALED, "", COUNTED, 0),
+        (UNIT_AND_NAME, "", COUNTED, 0),
+        (DEVICE, "", None, 0),
     ],
     ids="comments commented-head no-head serial dicts unit yei lists tuples tag clock esp "
     "parted turns echoed long said labview influx shimmer split rows numbered movesense "
-    "edge-impulse".split(),
+    "edge-impulse semicolons scaled named-unit input-device".split(),
 )  # fmt: skip
 def test_text_of_people_is_read(tmp_path, text, mapping, options, lost):
     recording, report = read(tmp_path, "\n".join(text), "in.log", mapping, options=options)
-    assert recording.gyro_dps() == pytest.approx(THREE, abs=0.01)
+    truth = HELD / 1e4 if text is DEVICE else THREE
+    assert recording.gyro_dps() == pytest.approx(truth, abs=0.01)
     assert recording.scales.odr_hz == pytest.approx(100) and sum(report.dropped.values()) == lost
 
 

@@ -367,6 +367,8 @@ def _likely(target: str, wanted: Mapping[str, Mapped], first: Mapping[str, np.nd
         return unit or ("lsb" if counted else near)
     # those who keep to one system of units keep to it for both
     likely = {"m/s2": "rad/s", None: "lsb" if counted else "dps", "lsb": "lsb"}.get(unit, "dps")
+    if unit == "mg" and spelled(wanted[target].column).endswith("gyro"):
+        return "mrad/s"  # MAVLink's xacc and xgyro
     # one unit for the three, by the fastest
     every = np.abs([first[wanted[axis].column] for axis in GYRO if axis in wanted])
     fast = np.nanmax(every, initial=0.0) > FASTEST_DPS / RATE_DPS["rad/s"]

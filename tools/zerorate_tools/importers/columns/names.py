@@ -15,14 +15,14 @@ _GYRO = re.compile(
     r"(?:.*(?:gyroscope|gyrorotation|gyro|gyr|angularvelocity|ang(?:le|ular)?rate|angl?vel|rotationrate|omega)"
     rf"\d?{_CHIP}(?:uncalibrated|uncal|calibrated|corrected|unfilt|adc|raw|rad|data|rate|dps|dof|values?|v"
     r"|static|noise){0,2}"
-    r"|(?:.*imu\d*)?(?:gy|[wg]|wb|pqr))"
+    r"|(?:.*imu\d*)?(?:gy|[wg]|wb|pqr|absr))"
     + f"{_AXIS}{_MADE}{_NUMBER}$|^{_AXIS}(?:gyroscope|gyro|gyr){_MADE}$"
 )
 _ACCEL = re.compile(
     r"(?:.*(?:accelerometer|acceleration|accel|acce|accl|acc|specificforce)"
     rf"\d?{_CHIP}(?:uncalibrated|uncal|calibrated|smooth|adc|raw|data|dof|ms2|m?g|values?|v|vector|ln|wr|static"
     r"|noise|includinggravity){0,2}"
-    r"|(?:.*imu\d*)?(?:ac?|gf|fb?))"
+    r"|(?:.*imu\d*)?(?:ac?|gf|fb?|abs))"
     + f"{_AXIS}{_MADE}{_NUMBER}$|^{_AXIS}(?:accelerometer|accel|accl|acc){_MADE}$"
 )
 #: Whose axis stands before a part of a body, say: GyroX_left_leg.

@@ -29,10 +29,16 @@ COLOUR = re.compile(rb"\x1b\[[\d;]*m")
 _HEADING = re.compile(rb"([ \t]*)([A-Za-z][^:={]*?) ?[:{]\s*$")
 _ITEM = re.compile(rb"\s*- [-\d.]")
 #: What ends a label; and a topic, which needs no colon.
-_LABEL = re.compile(r"""[:=][\s"'\[({]*$|^\W*[\w.]*[A-Za-z]\w*/[\w./]*[A-Za-z]\w*\s+$""")
+_LABEL = re.compile(
+    r"""[:=][\s"'\[({]*$|\w\s+\[\s*$|^\W*[\w.]*[A-Za-z]\w*/[\w./]*[A-Za-z]\w*\s+$"""
+)
 _WORDS = re.compile(r"[A-Za-z_][\w./]*(?:[ -][A-Za-z_][\w./]*)*")
 #: A pair whose value is a word.
 _WORDED = re.compile(r"\w+=[^\s=:,]*[^\W\d][^\s=:,]*[\s,]+")
+#: A name and its unit: [gyro/mdps].
+_NAMED_UNIT = re.compile(r"[\[(]([A-Za-z]+)/([^\[\]()\s]+)[\])]")
+#: What evtest prints of an input device, and how many of an axis' value are a deg/s or a g.
+_EVENT = re.compile(rb"Event: time ([\d.]+), type \d+ .*code \d+ \((\w+)\), value (-?\d+)")
 _IN_BRACKETS = re.compile(r"\s*[\[(]([^\[\]()]+)[\])]")
 _BEHIND = re.compile(r"[\s\])}]*([^\s,;|\])}]+)(?!\s*[:=])")
 #: ESP-IDF's log: I (320) imu: gx=0.8, in milliseconds.
@@ -69,6 +75,7 @@ class Reader:
     def read(self, line: bytes) -> tuple[Kind, list[bytes]]:
         """The names of a line's numbers, and these; none of a comment, or an item of a list."""
         line = COLOUR.sub(b"", line) if b"\x1b" in line else line
+        line = _EVENT.sub(rb"Event time: \1, \2: \3", line)
         indent = len(line) - len(line.lstrip(b" \t"))
         if heading := _HEADING.match(line):
             self._heading, self._indent = heading[2].decode("utf-8", "replace"), indent
@@ -131,6 +138,7 @@ def _name(text: str, whose: str, beneath: bool) -> tuple[str, str]:
 
 def _without_unit(text: str) -> tuple[str, str]:
     """A text without what is in brackets, and the unit that is."""
+    text = _NAMED_UNIT.sub(lambda at: f"{at[1]} [{at[2]}]" if is_unit(at[2]) else at[0], text)
     units = [found for found in _IN_BRACKETS.findall(text) if is_unit(found)]
     return _IN_BRACKETS.sub("", text), units[-1] if units else ""
 
@@ -162,6 +170,8 @@ class Rows:
         self._reader, self._kinds = Reader(), dict.fromkeys(kinds)
         self._columns, self._first = columns_of(kinds), kinds[0]
         self._row: dict[str, bytes] = {}
+        # an input device is silent of an axis that does not change
+        self._before: dict[str, bytes] | None = {} if "ABS_RX" in self._columns else None
         self._held: set[Kind] = set()
         self._begun, self._ended = False, 0
 
@@ -200,6 +210,8 @@ class Rows:
             yield self._written(end)
 
     def _written(self, end: bytes) -> bytes:
+        if self._before is not None:
+            self._before = self._row = {**self._before, **self._row}
         cells = [self._row.get(name, b"") for name in self._columns]
         self._row, self._held = {}, set()
         return b",".join(b'"%b"' % cell if b"," in cell else cell for cell in cells) + end

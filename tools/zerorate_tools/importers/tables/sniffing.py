@@ -54,6 +54,8 @@ _RATE = re.compile(
     r"[^\d\n]{0,12}([\d.]*\d)\s*(k?)",
     re.I,
 )
+#: What evtest says of an axis: how many of its values are a deg/s, or a g.
+_RESOLUTION = re.compile(r"\((ABS_R?[XYZ])\)(?:(?!Event).)*?Resolution\s+(\d+)")
 #: What stands above Gyroflow's table: how many of a unit a count is.
 _SCALE = re.compile(rf"([tga])scale\s*,\s*({_NUMBER.pattern[:-1]})\s*,*\s*$")
 _SCALED = re.compile(r"t|[ga][xyz]")
@@ -150,7 +152,18 @@ def _of_sentences(kinds: tuple[Kind, ...], lines: list[bytes], encoding: str) ->
         names[at] = "time"
     dates = frozenset(n for n, cell in zip(names, cells[0]) if DATE.match(cell))
     above = [line.decode() for line in lines[:_LINES] if Reader().read(line)[0] not in kinds]
-    return Form(names, 0, ",", encoding, dates=dates, said_hz=_rate_said(above), kinds=kinds)
+    said = {at[1]: int(at[2]) for at in _RESOLUTION.finditer("".join(above)) if int(at[2])}
+    own = {n: f"{n} ({'deg/s' if 'R' in n else 'g'})" for n in said}
+    own["MSC_TIMESTAMP"] = "MSC_TIMESTAMP (us)"
+    scales = {own[name]: 1.0 / size for name, size in said.items()}
+    names = [own.get(name, name) for name in names]
+    return Form(
+        *(names, 0, ",", encoding),
+        dates=dates,
+        said_hz=_rate_said(above),
+        kinds=kinds,
+        scales=scales,
+    )
 
 
 def _goes_on(cells: list[str]) -> bool:
@@ -292,6 +305,7 @@ def _as_many(names: list[str], cells: list[str]) -> bool:
 def _cells(line: str, delimiter: str) -> list[str]:
     # the parser of rows takes no cell that is longer than csv's limit either
     text = " ".join(line.split()) if delimiter == " " else line
+    text = text.rstrip().removesuffix(";") if delimiter == "," else text
     return next(csv.reader([text[:100_000]], delimiter=delimiter, skipinitialspace=True), [])
 
 
