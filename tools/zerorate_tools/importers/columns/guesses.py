@@ -307,7 +307,7 @@ def _by_calendar(values: np.ndarray) -> tuple[str | None, str]:
 def _by_range(values: np.ndarray) -> tuple[str | None, str]:
     least, most = np.quantile(values, [0.02, 0.98])
     for unit, (low, high) in (("degc", DEGC), ("k", _KELVIN)):
-        if low <= least and most <= high:
+        if low <= least and most <= high and not (unit == "k" and are_whole(values)):
             return unit, f"it is around {np.median(values):.4g}"
     return None, ""
 

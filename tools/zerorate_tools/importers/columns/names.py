@@ -12,7 +12,7 @@ _MADE = "(?:cal|raw|mean|avg|out)?"
 _NUMBER = r"\d?"
 _CHIP = r"(?:(?:bm[agi]|i[ai]m|icm|lis|lsm|mpu)\d[a-z0-9]*?)?"
 _GYRO = re.compile(
-    r"(?:.*(?:gyroscope|gyrorotation|gyro|gyr|angularvelocity|ang(?:le|ular)?rate|angl?vel|rotationrate|omega)"
+    r"(?:.*(?:gyroscope|gyrorotation|gyro|gyr|angularvelocity|ang(?:le|ular)?rate|angl?vel|rotationrate|omega|angular)"
     rf"\d?{_CHIP}(?:uncalibrated|uncal|calibrated|corrected|unfilt|adc|raw|rad|data|rate|dps|dof|values?|v"
     r"|static|noise){0,2}"
     r"|(?:.*imu\d*)?(?:gy|[wg]|wb|pqr|absr))"
@@ -30,7 +30,7 @@ _GYRO_OF = re.compile(rf".*(?:gyroscope|gyro|gyr|angvel){_AXIS}[a-z0-9]*$")
 _ACCEL_OF = re.compile(rf".*(?:accelerometer|acceleration|accel|acce|accl|acc){_AXIS}[a-z0-9]*$")
 #: Less gravity, or gravity as a filter has it: no measure of it.
 _FREE = re.compile(r".*(?:freeacc|useracc|linacc|(?<!including)gravity)|lacc")
-_OTHER_SENSOR = re.compile("acc|mag|euler|quat|orient|heading|grav|baro|gps|location", re.I)
+_OTHER_SENSOR = re.compile("acc|linear|mag|euler|quat|orient|heading|grav|baro|gps|location", re.I)
 #: How sure numbers are, or what somebody takes away: no readings.
 _SPREAD = re.compile(r".*(?:covariance|variance|std|sigma|m(?:in|ax)$|bias(?:dps|rads)?[xyz0-9]*$)")
 #: As the sensor has it, and less a bias that somebody took away; motionRotation is CoreMotion's.

@@ -117,18 +117,28 @@ def sniffed(path: Path) -> Form:
         return _of_sentences(kinds, spoken, encoding)
     form = _table_in(lines[:_LINES], lines, encoding, path)
     if lines[0].startswith("GYROFLOW IMU LOG"):
-        form = _scaled(form, lines[: form.skip])
+        form = _scaled(form, _of_gyroflow(form.names, lines[: form.skip]))
     return replace(form, arrows=plain != content)
 
 
-def _scaled(form: Form, above: list[str]) -> Form:
-    """Columns of counts with the scales and units that Gyroflow says above them."""
-    found = [one for one in map(_SCALE.match, above) if one]
-    said = {one[1]: float(one[2]) for one in found}
-    own = {
-        n: f"{n} ({_OF_COUNTS[n[0]]})" for n in form.names if _SCALED.fullmatch(n) and n[0] in said
-    }
-    scales = {named: said[name[0]] for name, named in own.items()}
+def _of_gyroflow(names: list[str], above: list[str]) -> dict[str, tuple[str, float]]:
+    """By column of counts, the unit and the scale that Gyroflow says above them."""
+    said = {one[1]: float(one[2]) for one in map(_SCALE.match, above) if one}
+    counts = [name for name in names if _SCALED.fullmatch(name) and name[0] in said]
+    return {name: (_OF_COUNTS[name[0]], said[name[0]]) for name in counts}
+
+
+def _of_evtest(above: list[str]) -> dict[str, tuple[str, float]]:
+    """By column of an input device, its unit and the scale that evtest says of it."""
+    said = {at[1]: int(at[2]) for at in _RESOLUTION.finditer("".join(above)) if int(at[2])}
+    axes = {name: ("deg/s" if "R" in name else "g", 1.0 / size) for name, size in said.items()}
+    return {**axes, "MSC_TIMESTAMP": ("us", 1.0)}
+
+
+def _scaled(form: Form, said: dict[str, tuple[str, float]]) -> Form:
+    """Columns in the units and the scales that a file says of them."""
+    own = {name: f"{name} ({said[name][0]})" for name in form.names if name in said}
+    scales = {named: said[name][1] for name, named in own.items()}
     return replace(form, names=[own.get(name, name) for name in form.names], scales=scales)
 
 
@@ -152,18 +162,9 @@ def _of_sentences(kinds: tuple[Kind, ...], lines: list[bytes], encoding: str) ->
         names[at] = "time"
     dates = frozenset(n for n, cell in zip(names, cells[0]) if DATE.match(cell))
     above = [line.decode() for line in lines[:_LINES] if Reader().read(line)[0] not in kinds]
-    said = {at[1]: int(at[2]) for at in _RESOLUTION.finditer("".join(above)) if int(at[2])}
-    own = {n: f"{n} ({'deg/s' if 'R' in n else 'g'})" for n in said}
-    own["MSC_TIMESTAMP"] = "MSC_TIMESTAMP (us)"
-    scales = {own[name]: 1.0 / size for name, size in said.items()}
-    names = [own.get(name, name) for name in names]
-    return Form(
-        *(names, 0, ",", encoding),
-        dates=dates,
-        said_hz=_rate_said(above),
-        kinds=kinds,
-        scales=scales,
-    )
+    said_hz = _rate_said(above)
+    form = Form(names, 0, ",", encoding, dates=dates, said_hz=said_hz, kinds=kinds)
+    return _scaled(form, _of_evtest(above))
 
 
 def _goes_on(cells: list[str]) -> bool:
