@@ -4,6 +4,7 @@ import configparser
 import json
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -112,7 +113,7 @@ def test_the_real_process_comes_back_after_kill_9(tmp_path):
         assert "loaded" in words and "within the hour, is not kept" in words
 
 
-def test_the_unit_has_a_watchdog_and_no_rights(repository):
+def test_the_unit_has_a_watchdog_and_no_rights(repository, tmp_path):
     unit = configparser.ConfigParser(strict=False, interpolation=None)
     unit.optionxform = str
     text = (repository / "examples" / "zerorate.service").read_text()
@@ -122,3 +123,8 @@ def test_the_unit_has_a_watchdog_and_no_rights(repository):
     assert service["Type"] == "notify" and int(service["WatchdogSec"]) >= 15
     assert service["DynamicUser"] == "yes" and service["DevicePolicy"] == "closed"
     assert service["Restart"] == "always" and service["UMask"] == "0000"
+    if shutil.which("systemd-analyze"):
+        (tmp_path / "zerorate.service").write_text(text.replace(service["ExecStart"], "/bin/true"))
+        command = ["systemd-analyze", "verify", str(tmp_path / "zerorate.service")]
+        said = subprocess.run(command, capture_output=True, text=True).stderr
+        assert "zerorate.service" not in said, said
