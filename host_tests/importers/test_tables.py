@@ -199,6 +199,7 @@ SENSORS = [{"name": f"gyr{axis}", "units": "deg/s"} for axis in "XYZ"]
 EDGE_IMPULSE = {"interval_ms": 10, "sensors": SENSORS, "values": THREE.tolist()}
 SCALED = [f"Scaled. Acc (mg) [ 000.1, -00.2, 998.0 ], Gyr (DPS) [ {x}, {y}, {z} ]"
           for x, y, z in THREE]  # fmt: skip
+UNIT_BESIDE = [f"Gyro (deg/s): X = {x}, Y = {y}, Z = {z}" for x, y, z in THREE]
 UNIT_AND_NAME = [f"LSM6DSL [acc/mg]:  1, 2, 998\nLSM6DSL [gyro/mdps]:  {x}, {y}, {z}"
                  for x, y, z in 1e3 * THREE]  # fmt: skip
 HELD = np.rint(1e4 * THREE).astype(int)
@@ -247,11 +248,12 @@ COUNTED, BY_NUMBER = Options(hz=100.0), "t_us=1:s gx=2:dps gy=3:dps gz=4:dps"
         ([f"{row};" for row in ROWS], BY_NUMBER, None, 0),
         (SCALED, "", COUNTED, 0),
         (UNIT_AND_NAME, "", COUNTED, 0),
+        (UNIT_BESIDE, "", COUNTED, 0),
         (DEVICE, "", None, 0),
     ],
     ids="comments commented-head no-head serial dicts unit yei lists tuples tag clock esp "
     "parted turns echoed long said labview influx shimmer split rows numbered movesense "
-    "edge-impulse semicolons scaled named-unit input-device".split(),
+    "edge-impulse semicolons scaled named-unit unit-beside input-device".split(),
 )  # fmt: skip
 def test_text_of_people_is_read(tmp_path, text, mapping, options, lost):
     recording, report = read(tmp_path, "\n".join(text), "in.log", mapping, options=options)
@@ -302,6 +304,8 @@ SECONDS = pd.Timestamp("2026-05-01") + pd.to_timedelta(np.arange(500) // 100, "s
         ({"time": RARE.strftime("%H:%M:%S")}, "", 15_000_000),  # over midnight
         ({"time": RARE.strftime("%d-%b-%Y %H:%M:%S")}, "", 15_000_000),
         ({"time": (SINCE + pd.Timedelta("59min")).strftime("%M:%S.%f")}, "", 10_000),
+        ({"": SINCE.astype(str)}, "", 10_000),
+        ({"time": SINCE.strftime("%Y-%m-%d %H:%M:%S.%f UTC")}, "", 10_000),
         ({"time": [f"{t / 100} sec" for t in range(500)]}, "", 10_000),
         ({"tv_sec": SINCE_NS // 10**9, "tv_usec": SINCE_NS % 10**9 // 1000}, "", 10_000),
         ({"header.stamp.sec": SINCE_NS // 10**9, "header.stamp.nanosec": SINCE_NS % 10**9}, "",
@@ -331,13 +335,14 @@ def test_the_time_is_found_among_columns(tmp_path, columns, mapping, step_us):
             "gyroscope_lsm6ds3_c.{}",
             "gyro {} (in radians/s)",
             "w {} [rad·s⁻¹]",
+            "AngularVelocity_{}",
+            "twist.angular.{}",
         ),
     ],
 )
 def test_usual_names_and_units_of_rates_are_known(tmp_path, name):
-    axes = {"UncompGyro{}": "012", "imu1.wb[{}]": "012", "{}_rate": ("roll", "pitch", "yaw")}.get(
-        name, "xyz"
-    )
+    axes = {"UncompGyro{}": "012", "imu1.wb[{}]": "012", "AngularVelocity_{}": "123",
+            "{}_rate": ("roll", "pitch", "yaw")}.get(name, "xyz")  # fmt: skip
     frame = rates(["t_s", *map(name.format, axes)], 300)
     is_named = "rad" in name
     frame.iloc[:, 1:] = np.radians(frame.iloc[:, 1:]) if is_named else frame.iloc[:, 1:]

@@ -49,6 +49,8 @@ _TIME = re.compile(
     r"gpst|gpstime|(?:gps)?tow|sys(?:tem)?time|timeofweek|elapsed|elapsedtime|epoch?|.*offsettime|timestartup|timesincestart(?:in)?|rtctime|"
     r"(?:sys|gyro|imu)ts)$"
 )
+#: Of one sensor's rows: acc_time, t_gyro.
+_OF_ONE = re.compile("time(?:stamp)?$|^t(?:acc|gyr)")
 _STEP = re.compile("(?:d|delta)t(?:ime)?|timestep|(?:sampl(?:e|ing))?(?:interval|period)")
 _SEC = re.compile(r"(.*?)(nano|micro|milli|[num])?(?:secs?|seconds?)$")
 #: A column of a variable of a .mat.
@@ -165,7 +167,7 @@ def clocks(names: list[str]) -> list[str]:
     """The columns that look like the time of anything: acc_time, and X[s].1, which comes twice."""
     own = {name: re.sub(r"\.\d+$", "", name) for name in names}
     found = {*time_columns([*own.values()]), *in_units_of_time([*own.values()])}
-    return [n for n, of in own.items() if of in found or re.search("time(?:stamp)?$", spelled(of))]
+    return [n for n, of in own.items() if of in found or _OF_ONE.search(spelled(of))]
 
 
 def is_step(name: str) -> bool:
@@ -216,9 +218,13 @@ def _of_three(names: list[str]) -> list[str]:
     return [name for name in names if _ARRAY.sub("", name) not in wide or "[" not in name]
 
 
-def _with_letter(text: str) -> str:
-    """A name whose axis is 0, 1 or 2 at its end, as VectorNav's, with x, y or z there."""
-    return text[:-1] + "xyz"[int(text[-1])] if text[-1:] in ("0", "1", "2") else text
+def _with_letter(text: str, every: set[str]) -> str:
+    """A name whose axis is 0, 1 or 2 at its end, as VectorNav's, or 1, 2 or 3, as of a variable of
+    MATLAB's, with x, y or z there."""
+    stem, digit = text[:-1], text[-1:]
+    from_one = {f"{stem}{n}" for n in range(5)} & every == {f"{stem}{n}" for n in (1, 2, 3)}
+    at = ("123" if from_one else "012").find(digit)
+    return f"{stem}{'xyz'[at]}" if digit and at >= 0 else text
 
 
 def _in_units_of(target: str, names: list[str]) -> list[str]:
@@ -228,10 +234,11 @@ def _in_units_of(target: str, names: list[str]) -> list[str]:
 
 def _groups(names: list[str], pattern: re.Pattern[str], letter: str) -> list[dict[str, str]]:
     groups: dict[str, dict[str, str]] = {}
+    every = {spelled(name) for name in names if re.search("_[1-4]$", name)}
     for name in names:
         text = re.sub("|".join(_TURNS), lambda turn: _TURNS[turn[0]], spelled(name))
         before, _, last = name.rpartition(".")
-        match = pattern.match(text) or pattern.match(_with_letter(text))
+        match = pattern.match(text) or pattern.match(_with_letter(text, every))
         match = match or pattern.match(spelled(last))
         if match and match.lastindex:
             at, axis = match.start(match.lastindex), match[match.lastindex]

@@ -1,5 +1,6 @@
 """Which columns of a table an import takes, in which units, decided once before the rows."""
 
+import re
 import shlex
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -83,7 +84,7 @@ def planned(
         notes.append(f"time column {wanted.pop(TIME).column!r} left aside, as --hz is given")
     if not all(axis in wanted for axis in ACCEL):
         wanted = {target: mapped for target, mapped in wanted.items() if target not in ACCEL}
-    _check_there(table, wanted, path)
+    _check_there(table, wanted, units or {}, path)
     plan = Plan(wanted, {}, notes=notes, by_format=bool(table.mapping))
     named = [t for t, mapped in given.items() if mapped.unit and t in COLUMNS]
     plan.typed = frozenset([*(units or {}), *map(kind_of, named)])
@@ -186,7 +187,7 @@ def _found(
     found = {t: Mapped(t, c) for t, c in {**names, **({TEMP: temp} if temp else {})}.items()}
     if split := _split_time(table):
         found[TIME] = Mapped(TIME, split[0], "s", split[1:])
-    elif time := _time_column(table):
+    elif (time := _time_column(table)) is not None:
         found[TIME] = Mapped(TIME, time)
     return found
 
@@ -244,10 +245,13 @@ def _time_column(table: Table) -> str | None:
 
 def _axes_of_a_gyro_file(table: Table, path: Path) -> dict[str, str]:
     """Phones write a file a sensor, Gyroscope.csv with columns x y z."""
-    return usual.bare_axes(table.names) if "gyro" in path.name.lower() else {}
+    named = re.search("gyro|angular", path.name.lower())
+    return usual.bare_axes(table.names) if named else {}
 
 
-def _check_there(table: Table, wanted: Mapping[str, Mapped], path: Path) -> None:
+def _check_there(
+    table: Table, wanted: Mapping[str, Mapped], units: Mapping[str, str], path: Path
+) -> None:
     for mapped in wanted.values():
         for column in mapped.columns:
             if column not in table.names:
@@ -259,7 +263,7 @@ def _check_there(table: Table, wanted: Mapping[str, Mapped], path: Path) -> None
         do = f"map it: --map {missing[0]}=COLUMN:UNIT"
         if other := _of_another_sensor(table, path):
             do = f"these are no rates ({other}){_beside(path)}; else {do}"
-        elif words := _offered(table, wanted, missing):
+        elif words := _offered(table, wanted, missing, "gyro" in units):
             do = f"if these are rates: {words}"
         why = f" ({table.notes[0]})" if usual.unnamed(table.names) and table.notes else ""
         problem = f"no column for {', '.join(missing)}{why}"
@@ -304,13 +308,14 @@ def take_both(gyro: Path, other: Path) -> str:
     return f"zerorate import {shlex.quote(str(gyro))} {shlex.quote(str(other))} --out FILE.parquet"
 
 
-def _offered(table: Table, wanted: Mapping[str, Mapped], missing: list[str]) -> str:
+def _offered(table: Table, wanted: Mapping[str, Mapped], missing: list[str], known: bool) -> str:
     """A ready mapping of what may be rates, by names or, where nothing names columns, by values."""
     if usual.unnamed(table.names):
         likely = likely_columns(table) if not set(wanted) - {TIME} else []
         return " ".join(f"--map {shlex.quote(words)}" for words in likely)
     bare = usual.bare_axes(table.names)
-    unit = (by_habit("gx", bare["gx"], table.names) or ("dps", ""))[0] if bare else ""
+    ask = bare and not known
+    unit = (by_habit("gx", bare["gx"], table.names) or ("dps", ""))[0] if ask else ""
     return " ".join(map_words(t, c, unit) for t, c in bare.items() if t in missing)
 
 

@@ -202,7 +202,9 @@ def seconds_of(cells: pa.Array) -> np.ndarray:
     import pandas
 
     text = pandas.Series(_decoded(cells), dtype=object).str.strip()
-    text = text.str.replace(rf"(?i)^{DAY}|\[\w+]$", "", regex=True).str.replace(",", ".")
+    text = text.str.replace(rf"(?i)^{DAY}|\[\w+]$|\s+(?:utc|gmt)$", "", regex=True).str.replace(
+        ",", "."
+    )
     text = text.str.replace(r"^(\d\d?:\d\d:\d\d):(\d+)", r"\1.\2", regex=True)
     text = text.str.replace(r"^(\d\d?:\d\d\.)", r"0:\1", regex=True)
     text = text.str.replace(r"\s+([+-]\d\d:?\d\d)$", r"\1", regex=True)

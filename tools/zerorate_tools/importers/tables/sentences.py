@@ -138,7 +138,9 @@ def _name(text: str, whose: str, beneath: bool) -> tuple[str, str]:
 
 def _without_unit(text: str) -> tuple[str, str]:
     """A text without what is in brackets, and the unit that is."""
-    text = _NAMED_UNIT.sub(lambda at: f"{at[1]} [{at[2]}]" if is_unit(at[2]) else at[0], text)
+    found = _NAMED_UNIT.search(text)
+    if found and is_unit(found[2]) and not is_unit(f"{found[1]}/{found[2]}"):
+        text = _NAMED_UNIT.sub(r"\1 [\2]", text)
     units = [found for found in _IN_BRACKETS.findall(text) if is_unit(found)]
     return _IN_BRACKETS.sub("", text), units[-1] if units else ""
 

@@ -196,10 +196,10 @@ def _table_in(lines: list[str], every: list[str], encoding: str, path: Path) -> 
         _cells(lines[skip], delimiter) if at is not None else _whole_row(lines[skip:], delimiter)
     )
     names, note = _names(lines, at, skip, first, delimiter)
-    found_units = list(map(_unit_behind, first))
-    names = [f"{name} [{unit}]" if unit else name for name, unit in zip(names, found_units)]
-    units = {name: unit for name, unit in zip(names, found_units) if unit}
-    first = [cell.strip().removesuffix(unit) for cell, unit in zip(first, found_units)]
+    behind = _units_behind(lines[skip:], len(names), delimiter)
+    names = [f"{name} [{unit}]" if unit else name for name, unit in zip(names, behind)]
+    units = {name: unit for name, unit in zip(names, behind) if unit}
+    first = [cell.strip().removesuffix(unit) for cell, unit in zip(first, behind)]
     dates = frozenset(name for name, cell in zip(names, first) if DATE.match(cell.strip()))
     words = _words(every[skip:], names, delimiter, dates | {*units})
     return Form(
@@ -316,6 +316,13 @@ def _numbers(cells: list[str], delimiter: str) -> int:
         return is_number or bool(_unit_behind(cell))
 
     return sum(is_one(cell.strip()) for cell in cells)
+
+
+def _units_behind(lines: list[str], width: int, delimiter: str) -> list[str]:
+    """By column, the unit that stands behind each of its numbers; "" where none does."""
+    rows = [cells for cells in (_cells(line, delimiter) for line in lines) if len(cells) == width]
+    units = [{_unit_behind(cell) for cell in cells if cell.strip()} for cells in zip(*rows)]
+    return [of.pop() if len(of) == 1 else "" for of in units] or [""] * width
 
 
 def _unit_behind(cell: str) -> str:
