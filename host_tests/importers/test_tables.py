@@ -304,6 +304,7 @@ SECONDS = pd.Timestamp("2026-05-01") + pd.to_timedelta(np.arange(500) // 100, "s
         ({"time": RARE.strftime("%H:%M:%S")}, "", 15_000_000),  # over midnight
         ({"time": RARE.strftime("%d-%b-%Y %H:%M:%S")}, "", 15_000_000),
         ({"time": (SINCE + pd.Timedelta("59min")).strftime("%M:%S.%f")}, "", 10_000),
+        ({"Unix Time": SINCE_NS // 10**9, "Microseconds": SINCE_NS % 10**9 // 1000}, "", 10_000),
         ({"": SINCE.astype(str)}, "", 10_000),
         ({"time": SINCE.strftime("%Y-%m-%d %H:%M:%S.%f UTC")}, "", 10_000),
         ({"time": [f"{t / 100} sec" for t in range(500)]}, "", 10_000),
@@ -336,13 +337,16 @@ def test_the_time_is_found_among_columns(tmp_path, columns, mapping, step_us):
             "gyro {} (in radians/s)",
             "w {} [rad·s⁻¹]",
             "AngularVelocity_{}",
+            "gyro_{}",
+            "{}_rad_s",
             "twist.angular.{}",
         ),
     ],
 )
 def test_usual_names_and_units_of_rates_are_known(tmp_path, name):
-    axes = {"UncompGyro{}": "012", "imu1.wb[{}]": "012", "AngularVelocity_{}": "123",
-            "{}_rate": ("roll", "pitch", "yaw")}.get(name, "xyz")  # fmt: skip
+    named = {"UncompGyro{}": "012", "imu1.wb[{}]": "012", "AngularVelocity_{}": "123"}
+    named |= dict.fromkeys(("{}_rate", "gyro_{}", "{}_rad_s"), ("roll", "pitch", "yaw"))
+    axes = named.get(name, "xyz")
     frame = rates(["t_s", *map(name.format, axes)], 300)
     is_named = "rad" in name
     frame.iloc[:, 1:] = np.radians(frame.iloc[:, 1:]) if is_named else frame.iloc[:, 1:]

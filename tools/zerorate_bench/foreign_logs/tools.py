@@ -298,3 +298,39 @@ log.csv("a long table by sensor and axis: time,sensor,axis,value", _long,
 log.csv("two sensors under a heading: label IMU1, IMU2",
     lambda w: pd.concat([plain(w).assign(label="IMU1"), plain(w).assign(label="IMU2", gx_dps=9)])
         .sort_values("t_s", kind="stable"))
+
+
+def _evtest(world: World) -> str:
+    """An axis that does not change is not said."""
+    names = ["ABS_X", "ABS_Y", "ABS_Z", "ABS_RX", "ABS_RY", "ABS_RZ"]
+    lines = [f"    Event code {n} ({name})\n      Resolution {14247 if n > 2 else 4096}"
+        for n, name in enumerate(names)]
+    before: dict[str, int] = {}
+    values = np.rint(np.hstack([world.g * 4096, world.dps * 14247])).astype(int)
+    for at, row in zip(world.whole(1e6, 2**32 - 5_000_000) % 2**32, values.tolist()):
+        said = {n: v for n, v in zip(names, row) if before.get(n) != v}
+        events = [f"4 (EV_MSC), code 5 (MSC_TIMESTAMP), value {at}"]
+        events += [f"3 (EV_ABS), code {names.index(n)} ({n}), value {v}" for n, v in said.items()]
+        events = [f"type {event}" for event in events] + ["-------------- SYN_REPORT ------------"]
+        lines += [f"Event: time 1789294043.831028, {event}" for event in events]
+        before |= said
+    return "\n".join([*lines, ""])
+
+
+log.text("Linux's evtest of a gamepad: axes that do not change are not said", _evtest)
+log.csv("a browser's devicemotion: alpha, beta, gamma",
+    lambda w: table("t_ms,acceleration.{xyz},accelerationIncludingGravity.{xyz},"
+        "rotationRate.beta,rotationRate.gamma,rotationRate.alpha",
+        w.whole(1e3), w.mps2 / 100, w.mps2, w.dps))
+log.csv("MATLAB's timetable: 0.01 sec, columns _1 to _3",
+    lambda w: table("Time,AngularVelocity_{123},Acceleration_{123}", [f"{t:g} sec" for t in w.t_s],
+        w.rad, w.mps2), words="--gyro-unit rad/s")
+
+
+def _scaled(world: World) -> str:
+    line = "Scaled. Acc (mg) [ {}, {}, {} ], Gyr (DPS) [ {}, {}, {} ], Tmp (C) [ {} ]\n"
+    rows = np.column_stack([1e3 * world.g, world.dps, world.degc])
+    return "".join(line.format(*(f"{value: 09.2f}" for value in row)) for row in rows)
+
+
+log.text("SparkFun's sketch: Acc (mg) [ x, y, z ], Gyr (DPS) [ ... ]", _scaled, words="--hz 100")

@@ -15,8 +15,8 @@ _GYRO = re.compile(
     r"(?:.*(?:gyroscope|gyrorotation|gyro|gyr|angularvelocity|ang(?:le|ular)?rate|angl?vel|rotationrate|omega|angular)"
     rf"\d?{_CHIP}(?:uncalibrated|uncal|calibrated|corrected|unfilt|adc|raw|rad|data|rate|dps|dof|values?|v"
     r"|static|noise){0,2}"
-    r"|(?:.*imu\d*)?(?:gy|[wg]|wb|pqr|absr))"
-    + f"{_AXIS}{_MADE}{_NUMBER}$|^{_AXIS}(?:gyroscope|gyro|gyr){_MADE}$"
+    r"|(?:.*imu\d*)?(?:gy|[wg]|wb|pqr|absr|rate|dps))"
+    + f"{_AXIS}{_MADE}{_NUMBER}$|^{_AXIS}(?:gyroscope|gyro|gyr|rate){_MADE}$"
 )
 _ACCEL = re.compile(
     r"(?:.*(?:accelerometer|acceleration|accel|acce|accl|acc|specificforce)"
@@ -46,7 +46,7 @@ _CAPITAL_T = re.compile("T(?![A-Za-z])")
 _TIME = re.compile(
     r"(?:t|ts|times?|timestamps?|timestampsample|now|stamp|.*time[mun]s|secondselapsed|datetime|"
     r"date|utc|milli(?:s|seconds)|micro(?:s|seconds)|loggingtime|.*timestamp(?:unix|sincereboot)?(?:cal)?|.*headerstamp|sampletime|"
-    r"gpst|gpstime|(?:gps)?tow|sys(?:tem)?time|timeofweek|elapsed|elapsedtime|epoch?|.*offsettime|timestartup|timesincestart(?:in)?|rtctime|"
+    r"gpst|gpstime|(?:gps)?tow|(?:sys(?:tem)?|unix|utc|host|local|device|u)time|timeofweek|elapsed|elapsedtime|epoch?|.*offsettime|timestartup|timesincestart(?:in)?|rtctime|"
     r"(?:sys|gyro|imu)ts)$"
 )
 #: Of one sensor's rows: acc_time, t_gyro.
@@ -63,7 +63,8 @@ _PART = re.compile("(.*?)(real|[wxyzijk])$")
 _PARTS = {"real": "w", "i": "x", "j": "y", "k": "z"}
 #: What aircraft call their rates.
 BODY_RATES = dict(zip(("gx", "gy", "gz"), "pqr"))
-_TURNS = {"rollrate": "gyrox", "pitchrate": "gyroy", "yawrate": "gyroz"}
+_TURNS = {"roll": "x", "pitch": "y", "yaw": "z"}
+_TURN_RATE = re.compile("(roll|pitch|yaw)rate|(?:(?<=gyro)|(?<=rate))(roll|pitch|yaw)$")
 #: What browsers call theirs.
 _BROWSERS = dict(zip(("gx", "gy", "gz"), ("beta", "gamma", "alpha")))
 
@@ -186,13 +187,16 @@ def in_units_of_time(names: list[str]) -> list[str]:
 
 
 def split_times(names: list[str]) -> list[tuple[str, str, str]]:
-    """Columns of whole seconds, those of a smaller unit beside them, and that unit, as ROS and C
-    have a stamp."""
+    """Columns of seconds, those of a smaller unit beside them, and that unit, as ROS and C have a
+    stamp; microseconds alone go with any time."""
     by_stem: dict[str, dict[str, str]] = {}
     for name in names:
         if found := _SEC.match(re.sub(r"[^a-z]", "", name.lower())):
             unit = {"nano": "ns", "micro": "us", "milli": "ms"}.get(found[2], f"{found[2] or ''}s")
             by_stem.setdefault(found[1], {})[unit] = name
+    for time in time_columns(names):
+        if time not in by_stem.get("", {}).values():
+            by_stem.setdefault("", {}).setdefault("s", time)
     pairs = [(held, unit) for held in by_stem.values() for unit in ("ns", "us", "ms")]
     return [(held["s"], held[unit], unit) for held, unit in pairs if {"s", unit} <= held.keys()]
 
@@ -236,7 +240,8 @@ def _groups(names: list[str], pattern: re.Pattern[str], letter: str) -> list[dic
     groups: dict[str, dict[str, str]] = {}
     every = {spelled(name) for name in names if re.search("_[1-4]$", name)}
     for name in names:
-        text = re.sub("|".join(_TURNS), lambda turn: _TURNS[turn[0]], spelled(name))
+        text = _TURN_RATE.sub(lambda turn: "gyro" + _TURNS[turn[1] or turn[2]], spelled(name))
+        text = _TURNS.get(text, text) if pattern is _LAST_AXIS else text
         before, _, last = name.rpartition(".")
         match = pattern.match(text) or pattern.match(_with_letter(text, every))
         match = match or pattern.match(spelled(last))

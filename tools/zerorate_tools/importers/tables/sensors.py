@@ -19,6 +19,8 @@ from .table import Chunk, Table
 _OF_RATES = re.compile(r"gyr|angular|rotation.?rate|omega", re.I)
 #: Of a word, that are read together.
 _ROWS, PLACE = 32_768, "place of a row"
+#: Of rows, how many are another device's than the row before where devices take turns.
+_TURNS = 0.1
 #: No two clocks of one sample go further apart.
 _CLOCKS_APART = 1e-3
 _WHOSE = re.compile(
@@ -119,9 +121,10 @@ def _devices(table: Table) -> tuple[str, dict[float, str]]:
     """The column that tells devices apart, and its codes with their words; ("", {}) for none."""
     named = [n for n in table.names if _WHOSE.fullmatch(usual.spelled(n.rpartition(".")[2]))]
     numbers = table.first_rows([name for name in named if name not in table.words])
-    # IMU1 and IMU2 differ in their number alone
-    alike = (n for n, of in table.words.items() if len({re.sub(r"\d", "", w) for w in of}) == 1)
-    named += [name for name in alike if name not in named]
+    # IMU1 and IMU2 differ in their number alone, and take turns
+    alike = [n for n, of in table.words.items() if len({re.sub(r"\d", "", w) for w in of}) == 1]
+    turns = table.first_rows(alike)
+    named += [n for n in alike if n not in named and np.mean(np.diff(turns[n]) != 0) > _TURNS]
     for name in named:
         if name in table.words:
             return name, {float(code): word for code, word in enumerate(table.words[name])}
