@@ -55,4 +55,4 @@ while True:
                 bias_lsb[axis] = round(learner.bias_lsb(axis))
         saves = schedule.saves
         if not schedule.offer(learner.state, bias_lsb, seconds) and schedule.saves > saves:
-            print("learned.bin: cannot be written; is there room? Trying again in an hour")
+            print("learned.bin: cannot be written; is there room? Trying again later")

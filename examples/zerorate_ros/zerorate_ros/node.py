@@ -57,7 +57,7 @@ class ImuCore:
         return radians(self.learner.quality_lsb(axis) / self.lsb_per_dps)
 
     def keep(self, at_the_end=False):
-        """Write what was learned, once an hour at most."""
+        """Write what was learned, when the schedule says so."""
         for axis in range(3):
             self.bias_q8[axis] = round(self.learner.bias_lsb(axis) * 256)
         if not self.learner.learned:  # what is known of this rest alone is not kept

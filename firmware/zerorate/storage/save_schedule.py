@@ -27,13 +27,14 @@ class SaveSchedule:
     """Saves to store when a vital value has moved by tolerance, writes_a_day times a day at most.
 
     vital values are what a reader of the state would miss: array('i') of length items, for
-    example each axis's bias in Q8 LSB. The budget is kept from one power-on to the next as one
-    write more for each power-on. Flash of 100 000 cycles and two slots at 24 writes a day last
-    22 years. Raises ValueError for a budget below one.
+    example each axis's bias in Q8 LSB. A power-on adds five writes: the first is at once, and
+    others wait as long as it has lasted, so that a short one is kept, too. Flash of 100 000 cycles
+    and two slots at 24 writes a day last 22 years. Raises ValueError for a budget below one.
 
     While flash is erased and written nothing else runs. With `corrector`, a Corrector, a save waits
     for a rest, where a gap costs nothing, but no longer than one write's share of a day; and its
-    `explain` tells what saving costs. saves: how many there were; longest_us: of one of them.
+    `explain` tells what saving costs. saves: how many there were; longest_us: of one of them;
+    next_s: from when on one may be, seconds since power-on.
     """
 
     def __init__(
@@ -55,8 +56,7 @@ class SaveSchedule:
         self._corrector = corrector
         self._due_s = -1
         self._saved = array("i", [0] * length)
-        self._saved_s = 0
-        self._written = False
+        self.next_s = 0
         if corrector is not None:
             corrector.schedule = self
 
@@ -78,8 +78,8 @@ class SaveSchedule:
         return written
 
     def is_due(self, now_s: int) -> bool:
-        """True when a write's share of a day has passed since the last one."""
-        return not self._written or now_s - self._saved_s >= self.interval_s
+        """True from next_s on."""
+        return now_s >= self.next_s
 
     def _waits(self, now_s):
         """True while a rest is better waited for."""
@@ -99,8 +99,10 @@ class SaveSchedule:
 
     def written_at(self, saved_s: int) -> None:
         """Tell when the state was last written, in seconds of `now_s`: below 0 before power-on."""
-        self._written = True
-        self._saved_s = saved_s
+        wait_s = self.interval_s
+        if saved_s >= 0:
+            wait_s = min(wait_s, saved_s + (wait_s + 15) // 16)
+        self.next_s = saved_s + wait_s
 
     def loaded(self, vital: "array[int]") -> None:
         """Tell what vital values the loaded state has: they need no saving."""

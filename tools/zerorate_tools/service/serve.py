@@ -129,7 +129,7 @@ class Service:
         return self.system.clock.ticks_diff(self._newest_us, last_us)
 
     def run(self) -> None:
-        """Until interrupted; then what was learned is written if an hour has passed since."""
+        """Until interrupted; then what was learned is written if that is due."""
         try:
             while True:
                 self.step()
@@ -231,7 +231,7 @@ class Service:
         self.system.clock.sleep_ms(_BUS_PAUSE_MS)
 
     def _keep(self) -> None:
-        """Write what was learned, at rest, when it moved, once an hour at most."""
+        """Write what was learned, at rest, when it moved and a write is due."""
         learner = self._corrector.corrector
         if learner.learned:  # and not of this rest alone
             for axis in range(3):
@@ -247,7 +247,7 @@ class Service:
             return
         self._is_refused = not kept
         if not kept:
-            self._schedule.written_at(self._now_s() - self._schedule.interval_s + _RETRY_S)
+            self._schedule.next_s = self._now_s() + _RETRY_S
             self.system.say(self._refused("is not kept yet; trying again every minute"))
 
     def _refused(self, so: str) -> str:
