@@ -52,7 +52,7 @@ def told_apart(table: Table, instance: int, path: Path) -> tuple[Table, int]:
         problem = f"there are {len(kinds)} sensors ({column}: {listed})"
         raise BadRecording(path, problem, do=f"give --instance 0 to {len(kinds) - 1}")
     code = list(kinds)[instance]
-    note = f"rows of several sensors ({column}: {listed}): {kinds[code]} is taken, by --instance"
+    note = f"rows of several sensors ({column}: {listed}): {kinds[code]}, chosen by --instance"
     return _alone(table, column, code, note), 0
 
 
@@ -124,7 +124,8 @@ def _devices(table: Table) -> tuple[str, dict[float, str]]:
     # IMU1 and IMU2 differ in their number alone, and take turns
     alike = [n for n, of in table.words.items() if len({re.sub(r"\d", "", w) for w in of}) == 1]
     turns = table.first_rows(alike)
-    named += [n for n in alike if n not in named and np.mean(np.diff(turns[n]) != 0) > _TURNS]
+    changes = {name: (np.diff(codes) != 0).sum() for name, codes in turns.items()}
+    named += [n for n in alike if n not in named and changes[n] > _TURNS * len(turns[n])]
     for name in named:
         if name in table.words:
             return name, {float(code): word for code, word in enumerate(table.words[name])}
