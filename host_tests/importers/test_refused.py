@@ -25,6 +25,7 @@ WITH_A_RATE = "// Sample rate: 50.0Hz\nGyr_X;Gyr_Y;Gyr_Z\n" + "0.1;0.2;0.3\n" * 
 SHAKEN = rates("t_s gx_dps gy_dps gz_dps ax ay az".split(), 500)
 SHAKEN[["ax", "ay", "az"]] = [0.5, 0.0, 11.0] + 5.0 * np.sin(np.outer(np.arange(500), [1, 2, 3]))
 TENS = np.arange(0, 5000, 10)
+MINUTE = rates("second gx_dps gy_dps gz_dps minute".split(), 500)
 CLOCK = 141700 + np.r_[30:60:0.1, 100:160:0.1]
 TURNED = pd.DataFrame({"t_s": TENS / 1e3, "gx": np.sin(TENS), "gy": 0.0, "gz": np.cos(TENS)})
 LISTS = pd.DataFrame({"t_s": np.arange(300) / 100, "pulse": 70, "gyro": "[0.8, -0.5, 0.3]"})
@@ -85,6 +86,7 @@ LISTS = pd.DataFrame({"t_s": np.arange(300) / 100, "pulse": 70, "gyro": "[0.8, -
         (table(500).rename(columns={"t_s": "min.timestamp"}), {}, r"--time-unit s \(100 Hz\)"),
         (table(500).assign(t_s=TENS, clock_ms=TENS), {}, "--map t_us=t_s:ms, or map .clock_"),
         (table(900).assign(t_s=CLOCK), {}, "write colons"),
+        (MINUTE.assign(second=TENS // 1000, msec=TENS % 1000), {}, "no time stamps; give --hz"),
         (table(500).rename(columns={"t_s": "time"}).assign(time="May 1st, at noon"), {},
          "no time can be read from column 'time'; .*--hz N"),
         (table(500), {"instance": 1}, "there is one gyroscope; leave --instance away"),

@@ -392,7 +392,8 @@ def _by_pace(
     turned = ""
     if len(likely) > 1:
         at = first[column] - first[column][0]
-        likely = {u: hz for u, hz in likely.items() if _turned(wanted, first, at * TIME_S[u])}
+        sizes = {u: _turned(wanted, first, at * TIME_S[u]) for u in likely}
+        likely = {u: likely[u] for u, size in sizes.items() if size and rate_unit_of(size)}
         turned = ", and gravity turns with the rates"
     if len(likely) != 1:
         return None, ""

@@ -218,9 +218,11 @@ def _with_gravity(table: Table) -> list[dict[str, str]]:
 
 def _split_time(table: Table) -> tuple[str, str, str] | None:
     """The columns of seconds and of a part of one, which is never as long as a second."""
-    for second, part, unit in usual.split_times(table.names):
+    of_minutes = any(re.match("min(?:ute)?s?$", usual.spelled(name)) for name in table.names)
+    for second, part, unit in () if of_minutes else usual.split_times(table.names):
         first = table.first_rows([second, part])
-        if np.nanmax(first[part], initial=0.0) * TIME_S[unit] < 1.0 and are_whole(first[second]):
+        is_part = np.nanmax(first[part], initial=0.0) * TIME_S[unit] < 1.0
+        if is_part and are_whole(first[second]):
             return second, part, unit
     return None
 
