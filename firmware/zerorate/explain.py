@@ -74,7 +74,7 @@ def explain(corrector):
     if faults:
         lines.append("Not learned from: " + ", ".join(faults) + ".")
     if 0 < s[_ELAPSED_US] * sensor.odr_hz < s[_WINDOW_N] * 1e4:  # a hundredth of what it should be
-        lines.append("dt_us is less than a hundredth of a period: give microseconds.")
+        lines.append("dt_us is below 1 % of a period: give microseconds.")
     if not sensor.accel_lsb_per_g:
         lines.append("Without an accelerometer a slow turn cannot be told from a bias.")
     if not sensor.temp_lsb_per_degc:
@@ -87,7 +87,8 @@ def explain(corrector):
         from .making import why_without
 
         unload("zerorate", "making")
-        lines.extend(["Left out: %s." % why_without(part) for part in corrector.left_out])
+        for part in corrector.left_out:
+            lines.append("Left out: %s." % why_without(part))
     if corrector.schedule is not None:
         lines.append(saving_text(corrector.schedule, sensor))
     lines.extend(runs())

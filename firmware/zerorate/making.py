@@ -72,4 +72,4 @@ def why_without(left_out):
     """Return the words of an entry of left_out, the name of a part or words already."""
     if " " in left_out:
         return left_out
-    return "%s is not on this board; zerorate flash --with %s sends it" % (left_out, left_out)
+    return "{0} is not on this board; zerorate flash --with {0} sends it".format(left_out)

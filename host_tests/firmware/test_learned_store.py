@@ -239,6 +239,13 @@ class TestSchedule:
         assert not schedule.offer(OLD, [1009, 1991, 3000], 5)
         assert schedule.offer(OLD, [1000, 1990, 3000], 6)
 
+    def test_what_a_power_on_began_with_is_not_written_again(self):
+        store = LearnedStore(FakeMemory(20_000), BINDING, Corrector())
+        assert store.save() and store.load() == codes.LOADED
+        schedule = SaveSchedule(store, 3, tolerance=10)
+        offered = [schedule.offer(store.corrector.state, [x, 0, 0], 0) for x in (9, 100, 109, 110)]
+        assert offered == [False, False, False, True]
+
     def test_a_day_of_wild_changes_stays_within_the_budget(self, schedule, memory):
         def offered(second):
             return schedule.offer(OLD, [1000 + second * 50, 0, 0], second)

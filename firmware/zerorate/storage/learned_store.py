@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 const = int
 # layout: The corrector's settings
 _STEP_LSB = const(29)
+# layout: What the reader of model.bin says
+_LOADED = const(0)
 # layout: What a store says
 _OTHER_BINDING = const(3)
 # layout: end
@@ -60,7 +62,9 @@ class LearnedStore:
         in_words says each result; the corrector is as it was when it is not LOADED.
         """
         self._bind()
-        return self.corrector.load(self.state, same)
+        reason = self.corrector.load(self.state, same)
+        self.loaded = reason == _LOADED
+        return reason
 
     def in_words(self, reason: int) -> str:
         """What load returned, in words; of another binding also what of it or which setting.

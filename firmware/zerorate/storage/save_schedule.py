@@ -27,9 +27,10 @@ class SaveSchedule:
     """Saves to store when a vital value has moved by tolerance, writes_a_day times a day at most.
 
     vital values are what a reader of the state would miss: array('i') of length items, for
-    example each axis's bias in Q8 LSB. A power-on adds five writes: the first is at once, and
-    others wait as long as it has lasted, so that a short one is kept, too. Flash of 100 000 cycles
-    and two slots at 24 writes a day last 22 years. Raises ValueError for a budget below one.
+    example each axis's bias in Q8 LSB. A power-on adds five writes at most: each waits as long as
+    it has lasted, so that a short one is kept, too. What a LearnedStore loaded needs none. Flash of
+    100 000 cycles and two slots at 24 writes a day last 22 years. Raises ValueError for a budget
+    below one.
 
     While flash is erased and written nothing else runs. With `corrector`, a Corrector, a save waits
     for a rest, where a gap costs nothing, but no longer than one write's share of a day; and its
@@ -63,6 +64,10 @@ class SaveSchedule:
     def offer(self, payload: "Any", vital: "array[int]", now_s: int) -> bool:
         """Save payload if it is due at now_s, seconds since power-on; True when it was written."""
         if not self.is_significant(vital):
+            return False
+        if getattr(self.store, "loaded", False):  # with what this power-on began
+            self.store.loaded = False
+            self.loaded(vital)
             return False
         if not self.is_due(now_s) or self._waits(now_s):
             self.postponed += 1

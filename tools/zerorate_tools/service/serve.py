@@ -195,8 +195,7 @@ class Service:
         self._corrector = CheckedCorrector(learner)
         budget = self.system.writes_a_day
         self._schedule = SaveSchedule(self._store, 3, _TOLERANCE_LSB, budget, learner)
-        self._is_stored = reason == LOADED
-        if self._is_stored:
+        if reason == LOADED:
             ago_s = self.system.stored_ago_s()
             ago_s = ago_s if 0 <= ago_s < self._schedule.interval_s else self._schedule.interval_s
             self._schedule.written_at(self._now_s() - int(ago_s))
@@ -236,9 +235,6 @@ class Service:
         if learner.learned:  # and not of this rest alone
             for axis in range(3):
                 self._bias_lsb[axis] = round(learner.bias_lsb(axis))
-            if self._is_stored:  # what this power-on began with needs no writing
-                self._schedule.loaded(self._bias_lsb)
-                self._is_stored = False
         if not self._schedule.is_significant(self._bias_lsb):
             return
         saves = self._schedule.saves
