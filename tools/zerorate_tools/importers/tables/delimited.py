@@ -91,6 +91,8 @@ def _chunks(
         if rows.num_rows and not lines.endswith(_ENDS):
             dropped["the last line does not end, so a digit may be missing"] += 1
             break
+        for name in form.units:
+            _refuse_another_unit(rows, name, form, place, path)
         columns = {n: _numbers(rows.column(n).combine_chunks(), n, form) for n in names}
         columns |= {n: columns[n] * form.scales[n] for n in names if n in form.scales}
         chunk = Chunk(place, columns)
@@ -106,6 +108,22 @@ def _rows(path: Path, lines: bytes, form: Form, names: list[str], odd: _OddLines
         problem = f"no table: {str(error)[:120]}"
         do = "name a CSV with a row for each sample"
         raise BadRecording(path, problem, do=do) from error
+
+
+def _refuse_another_unit(
+    rows: pa.Table, name: str, form: Form, place: np.ndarray, path: Path
+) -> None:
+    """Raise BadRecording where another unit stands behind a number than behind the first ones."""
+    if name not in rows.column_names:
+        return
+    unit = re.escape(form.units[name])
+    other = r"\d\s*[^\d\s.,eE+-]\S*\s*$"
+    cells = pc.replace_substring_regex(rows.column(name), rf"\s*{unit}\s*$", "")
+    at = pc.index(pc.match_substring_regex(cells, other), True).as_py()
+    if at >= 0:
+        problem = f"{rows.column(name)[at]} is in another unit than column {name!r}"
+        do = "write all of its cells in one unit"
+        raise BadRecording(path, problem, row=int(place[at]) + 1, do=do)
 
 
 def _refuse_other_names(rows: pa.Table, chunk: Chunk, path: Path, dropped: Counter[str]) -> None:

@@ -170,10 +170,12 @@ def _beside(table: Table, column: str, words: list[str]) -> Table:
     """
     shared = _times(table, column)
     values = [name for name in table.names if name not in (*shared, column)]
+    first = table.first_rows([column, *values])
+    if usual.gyro_groups(words) and len(own := _that_change(first, column)) == 1:
+        values = own  # beside a unit, say, or a number of the word
     bare = usual.unnamed(table.names) and len(values) == len("xyz")
     labels = dict(zip(values, "xyz" if bare else values))
     times = {("time" if bare else name): name for name in shared}
-    first = table.first_rows([column, *values])
     is_sorted = bool(shared) and (np.diff(first[column]) != 0).sum() < len(words)
     one = len(values) == 1 and bool(usual.gyro_groups(words))
     parts = {
@@ -202,6 +204,16 @@ def _beside(table: Table, column: str, words: list[str]) -> Table:
 
     words_left = {} if one else table.words
     return replace(table, names=[*times, *parts], chunks=chunks, words=words_left)
+
+
+def _that_change(first: dict[str, np.ndarray], column: str) -> list[str]:
+    """The columns that are not the same in all rows of each word."""
+    rows = [first[column] == code for code in np.unique(first[column])]
+    return [
+        n
+        for n, of in first.items()
+        if any(np.nanmax(np.abs(np.diff(of[r])), initial=0) for r in rows)
+    ]
 
 
 def _of_word(code: int, chunks: Iterable[Chunk], column: str) -> Iterator[Chunk]:
