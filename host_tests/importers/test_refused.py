@@ -86,6 +86,8 @@ LISTS = pd.DataFrame({"t_s": np.arange(300) / 100, "pulse": 70, "gyro": "[0.8, -
         (table(500).rename(columns={"t_s": "min.timestamp"}), {}, r"--time-unit s \(100 Hz\)"),
         (table(500).assign(t_s=TENS, clock_ms=TENS), {}, "--map t_us=t_s:ms, or map .clock_"),
         (table(900).assign(t_s=CLOCK), {}, "write colons"),
+        ("t_s,gx,gy,gz\n" + "0,9 dps,1 dps,1 dps\n" * 500 + "1,9 dps,0.1 rad/s,1 dps\n", {},
+         "row 501: 0.1 rad/s is in another unit than column 'gy .dps.'; write all"),
         (MINUTE.assign(second=TENS // 1000, msec=TENS % 1000), {}, "no time stamps; give --hz"),
         (table(500).rename(columns={"t_s": "time"}).assign(time="May 1st, at noon"), {},
          "no time can be read from column 'time'; .*--hz N"),

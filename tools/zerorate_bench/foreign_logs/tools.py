@@ -334,3 +334,15 @@ def _scaled(world: World) -> str:
 
 
 log.text("SparkFun's sketch: Acc (mg) [ x, y, z ], Gyr (DPS) [ ... ]", _scaled, words="--hz 100")
+
+
+def _of_two_devices(world: World) -> pd.DataFrame:
+    of = {"accel": world.g, "gyro": world.dps}
+    names = "time,device,sensor,{xyz}"
+    each = [table(names, world.t_s, *map(world.each, (device, name)), three + n)
+        for n, device in enumerate("AB") for name, three in of.items()]
+    return pd.concat(each).sort_values("time", kind="stable")
+
+
+log.csv("rows of two sensors of two devices: time,device,sensor,x,y,z", _of_two_devices,
+    words="--gyro-unit dps --accel-unit g")

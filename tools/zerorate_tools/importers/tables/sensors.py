@@ -37,14 +37,17 @@ def told_apart(table: Table, instance: int, path: Path) -> tuple[Table, int]:
     """
     if table.mapping:
         return table, instance
-    for column, words in table.words.items():
-        if any(map(_OF_RATES.search, words)) or usual.gyro_groups(words):
-            return _beside(*_with_axes(table, column, words)), instance
-    column, kinds = _devices(table)
+    of_rates = (
+        column
+        for column, words in table.words.items()
+        if any(map(_OF_RATES.search, words)) or usual.gyro_groups(words)
+    )
+    sensor = next(of_rates, "")
+    column, kinds = _devices(table, sensor)
     if not column:
-        return table, instance
+        return _by_sensor(table, sensor), instance
     listed = ", ".join(kinds.values())
-    if not usual.gyro_groups(table.names):
+    if not sensor and not usual.gyro_groups(table.names):
         problem = f"rows of several sensors ({column}: {listed}), and nothing says which are rates"
         do = "write the rows of the gyroscope into a file of their own"
         raise BadRecording(path, problem, do=do)
@@ -53,7 +56,12 @@ def told_apart(table: Table, instance: int, path: Path) -> tuple[Table, int]:
         raise BadRecording(path, problem, do=f"give --instance 0 to {len(kinds) - 1}")
     code = list(kinds)[instance]
     note = f"rows of several sensors ({column}: {listed}): {kinds[code]}, chosen by --instance"
-    return _alone(table, column, code, note), 0
+    return _by_sensor(_alone(table, column, code, note), sensor), 0
+
+
+def _by_sensor(table: Table, sensor: str) -> Table:
+    """Columns for each sensor where a column of words names it; "" for none."""
+    return _beside(*_with_axes(table, sensor, table.words[sensor])) if sensor else table
 
 
 def by_own_times(table: Table) -> Table:
@@ -117,8 +125,18 @@ def _part_company(one: np.ndarray, other: np.ndarray) -> bool:
     return bool(abs(spans[1] / unit - spans[0]) > least)
 
 
-def _devices(table: Table) -> tuple[str, dict[float, str]]:
-    """The column that tells devices apart, and its codes with their words; ("", {}) for none."""
+def _devices(table: Table, sensor: str) -> tuple[str, dict[float, str]]:
+    """The column that tells devices apart, and its codes with their words; ("", {}) for none.
+
+    Where a column names sensors, each device's words stand beside each of its words.
+    """
+    if sensor:
+        first = table.first_rows([*table.words])
+        named = [n for n in table.words if n != sensor and _WHOSE.fullmatch(usual.spelled(n))]
+        cells = {n: len(np.unique(first[sensor] * MOST_WORDS + first[n])) for n in named}
+        sizes = {n: len(table.words[n]) * len(table.words[sensor]) for n in named}
+        whole = next((n for n in named if cells[n] == sizes[n]), "")
+        return whole, {float(code): word for code, word in enumerate(table.words.get(whole, []))}
     named = [n for n in table.names if _WHOSE.fullmatch(usual.spelled(n.rpartition(".")[2]))]
     numbers = table.first_rows([name for name in named if name not in table.words])
     # IMU1 and IMU2 differ in their number alone, and take turns
