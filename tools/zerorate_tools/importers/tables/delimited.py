@@ -151,6 +151,8 @@ def _changed(lines: bytes, form: Form) -> bytes:
     """Lines told apart as the form says: one blank parts cells in columns, with none at either end,
     and a clock before an arrow is a cell."""
     lines = without_arrows(lines) if form.arrows else lines
+    if not lines.endswith(_ENDS):  # a letter may be cut in two
+        lines = lines.decode(errors="replace").encode()
     if form.delimiter == "," and b";" in lines:
         lines = re.sub(rb"(?m);[ \t]*(?=\r?$)", b"", lines)
     return _single_blanks(lines) if form.delimiter == " " else lines

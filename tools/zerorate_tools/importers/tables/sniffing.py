@@ -158,7 +158,7 @@ def _of_sentences(kinds: tuple[Kind, ...], lines: list[bytes], encoding: str) ->
     ends = {kind[at] for kind in kinds for at in (0, -1)}
     own = [at for at, name in enumerate(names) if name.isdigit() and name in ends]
     at = next((at for at in own if _goes_on([row[at] for row in cells if row[at]])), None)
-    if at is not None:
+    if at is not None and "time" not in names:
         names[at] = "time"
     dates = frozenset(n for n, cell in zip(names, cells[0]) if DATE.match(cell))
     above = [line.decode() for line in lines[:_LINES] if Reader().read(line)[0] not in kinds]
