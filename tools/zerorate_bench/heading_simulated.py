@@ -317,11 +317,11 @@ def _of_kind(kind: str, rows: list[dict[str, Any]]) -> list[str]:
     seen = worth & (found > 0) & (np.abs(said) > _SIGMAS * sigma)
     within = 100 * np.mean(np.abs(said - true) < _SIGMAS * sigma) if len(entries) else np.nan
     percent = 100 * seen.sum() / max(worth.sum(), 1)
-    found = "yes" if percent >= 95 else "NO"
+    enough = "yes" if percent >= 95 else "NO"
     deployed = [r["after"] / r["before"] for r in rows if r["found"]]
     return [
         *(kind, f"{len(_found(rows))} of {len(rows)}"),
-        *(f"{seen.sum()} of {worth.sum()} ({percent:.0f} %)", found if worth.any() else "-"),
+        *(f"{seen.sum()} of {worth.sum()} ({percent:.0f} %)", enough if worth.any() else "-"),
         *(f"{within:.0f} %", "yes" if 90 <= within <= 99 else "NO"),
         f"{np.median(deployed):.2f}" if deployed else "-",
     ]
