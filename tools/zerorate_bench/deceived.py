@@ -126,6 +126,13 @@ def boat(start: Start) -> Bout:
     return Bout(wave @ np.stack([along, aside]))
 
 
+def anchored(start: Start) -> Bout:
+    """A ship at anchor on a flat sea: it yaws by 5 to 30 degrees every 3 to 12 minutes."""
+    w = 2 * np.pi / start.rng.uniform(180.0, 720.0)
+    yaw = start.rng.uniform(5.0, 30.0) * w
+    return Bout(about_vertical(start, yaw * np.cos(w * start.t_s + start.rng.uniform(0.0, 7.0))))
+
+
 def coning(start: Start) -> Bout:
     """A steady 1 to 5 dps about an axis 1 to 30 degrees off the vertical."""
     tilt = np.radians(start.rng.uniform(1.0, 30.0))
@@ -161,6 +168,7 @@ WORLDS: dict[str, Callable[[Start], Bout]] = {
     "car, with lateral acceleration": car_pressed,
     "slow creep between handlings": creep,
     "boat, 0.05 to 0.5 degrees": boat,
+    "ship at anchor, yaws for minutes": anchored,
     "coning, 1 to 5 dps": coning,
     "switched on in a turn": begun_in_a_turn,
     "level turns of 0.03 to 0.1 dps": level_turn,
