@@ -225,7 +225,7 @@ def beside_q13(s: ptr32, c: ptr32, i: int) -> int:
 
 
 def leave_out(s: ptr32, i: int, now: int):
-    """Follow that, for it is in the offset: a mean over a minute or so."""
+    """Follow what `beside_q13` returned, which is in the offset: a mean over a minute."""
     n = s[_OBSERVED + i]
     n = n if n < _MINUTE else _MINUTE
     s[_LEFT_OUT_Q20 + i] += ((now << 7) - s[_LEFT_OUT_Q20 + i]) // n

@@ -53,8 +53,7 @@ def gravity_settings(
     units: sub-units an interval; threshold: what a counter must pass; coarse_dps, fine_dps: first
     and smallest step; turning_dps: one sigma of a turn about gravity, as for a rest. document: one
     step of coarse_dps, no dead band and no threshold, and by default sub-units of 0.25 s, not 0.5:
-    it gives no numbers, and with these it errs least
-    (docs/motion.md). Raises ValueError.
+    it gives no numbers, and with these it errs least (docs/motion.md). Raises ValueError.
     """
     if sub_unit_s is None:
         sub_unit_s = 0.25 if document and odr_hz >= 8 else 0.5

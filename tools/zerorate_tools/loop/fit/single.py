@@ -34,7 +34,7 @@ WEAKER = (
     f"One recording only: it was cut into {PIECES} pieces, which were left out in {FOLDS} turns. "
     "Each was judged by a model fitted to the others. The same pieces chose the effects, so the "
     "error after is a little too low. One recording does not show whether an effect repeats at the "
-    "next power-on, so nothing is confirmed before a second one."
+    "next power-on, so no effect at rest is confirmed before a second one."
 )
 #: Said beside it where the recording has steps.
 STEPS_CHOSEN = (

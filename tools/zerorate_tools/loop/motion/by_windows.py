@@ -89,6 +89,8 @@ _LEVEL = 1 / 200
 #: By how much more may be left and be no worse, as the loop's figures count harm. An attitude given
 #: sees every turn, but headings of half a minute scatter by as much; gravity sees fewer.
 _NO_WORSE = {GIVEN: 1.02, GRAVITY: 1.0}
+#: Of an entry: what a share of nothing leaves of it in floats is none.
+_DECIMALS = 12
 #: Of the whole matrix: a part that is smaller is not named.
 _TRIFLE = 0.1
 
@@ -194,7 +196,7 @@ def _by_windows(train: list[Moving], holdout: list[Moving]) -> RateScale | None:
         # takes the noise for even, which a few bouts of a hand are not: parts left out must agree.
         p_value=float(np.exp(-max(min(device.nats, predicted), 0.0))),
         level=0.0 if all(f.moving.planar and f.moving.given is None for f in fitted) else _LEVEL,
-        deployed=(kept @ entries).reshape(3, 3),
+        deployed=np.round(kept @ entries, _DECIMALS).reshape(3, 3) + 0.0,  # no -0.0
         kind=_kind(entries, covariance),
         reference=reference,
         gains=np.array([gain, _NO_WORSE[reference] * before - after]),
