@@ -152,9 +152,10 @@ def test_a_line_that_is_no_row_keeps_its_place_in_blocks_of_any_size(
     assert checked or "not 3 cells (the first, row 4, has 2)" in found.dropped
 
 
-@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16", "utf-16-le", "latin-1"])
+@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16", "utf-16-le", "latin-1", "gbk"])
 def test_any_encoding_is_read(tmp_path, encoding):
-    frame = table(200).rename(columns={"temp_c": "temp [°C]"})
+    names = {f"g{a}_dps": f"角速度{a} [°/s]" for a in "xyz" if encoding != "latin-1"}
+    frame = table(200).rename(columns={"temp_c": "temp [°C]", **names})
     recording, _ = read(tmp_path, frame.to_csv(index=False).encode(encoding))
     assert recording.temp_degc()[0] == pytest.approx(25)
 
@@ -210,6 +211,11 @@ DEVICE += [f"Event: time 5.01, type {kind}, value {value}" for i, row in enumera
            for kind, value in (("4 (EV_MSC), code 5 (MSC_TIMESTAMP)", 10_000 * i),
            *((f"3 (EV_ABS), code {n + 3} (ABS_R{axis})", row[n]) for n, axis in enumerate("XYZ")
              if not i or row[n] != HELD[i - 1, n]))]  # fmt: skip
+SIGNALS = [f" ({i / 100})  can0  174   [8]  00 0A :: IMU(YawRate: {z} deg/s, RollRate: {x} deg/s, "
+           f"PitchRate: {y} deg/s)" for i, (x, y, z) in enumerate(THREE.tolist())]  # fmt: skip
+TOPICS = [f'dev/{sensor} {{"ts": {10 * i}, "x": {x}, "y": {y}, "z": {z}}}'
+          for i, (x, y, z) in enumerate(THREE.tolist()) for sensor in ("mag", "gyro")]  # fmt: skip
+MONITORED = [f"{{}}{i / 100:06.3f}{{}}{row}" for i, row in enumerate(lines(THREE).splitlines())]
 COUNTED, BY_NUMBER = Options(hz=100.0), "t_us=1:s gx=2:dps gy=3:dps gz=4:dps"
 
 
@@ -250,10 +256,20 @@ COUNTED, BY_NUMBER = Options(hz=100.0), "t_us=1:s gx=2:dps gy=3:dps gz=4:dps"
         (UNIT_AND_NAME, "", COUNTED, 0),
         (UNIT_BESIDE, "", COUNTED, 0),
         (DEVICE, "", None, 0),
+        (['"Log Date","1/5/26","","s"', '"Log Time","14:17:54","","s"', HEAD, *ROWS], "", None, 0),
+        (SIGNALS, "", None, 0),
+        (TOPICS, "t_us=ts:ms 'gx=dev/gyro x:dps' 'gy=dev/gyro y:dps' 'gz=dev/gyro z:dps'", None, 0),
+        ([f"{row.format('[00:00:', ',000] <inf> imu: ')},25" for row in MONITORED], BY_NUMBER, None,
+         0),
+        ([f"I ({10 * i}) imu: {row}" for i, row in enumerate(ROWS)],
+         "t_us=1:s gx=3:dps gy=4:dps gz=5:dps", None, 0),
+        ([row.format("2026-05-01 10:00:", " ") for row in MONITORED], BY_NUMBER, None, 0),
+        ([f"00> {row}" for row in ROWS], BY_NUMBER, None, 0),
     ],
     ids="comments commented-head no-head serial dicts unit yei lists tuples tag clock esp "
     "parted turns echoed long said labview influx shimmer split rows numbered movesense "
-    "edge-impulse semicolons scaled named-unit unit-beside input-device".split(),
+    "edge-impulse semicolons scaled named-unit unit-beside input-device settings cantools topics "
+    "zephyr esp-idf coolterm segger".split(),
 )  # fmt: skip
 def test_text_of_people_is_read(tmp_path, text, mapping, options, lost):
     recording, report = read(tmp_path, "\n".join(text), "in.log", mapping, options=options)
@@ -313,6 +329,7 @@ SECONDS = pd.Timestamp("2026-05-01") + pd.to_timedelta(np.arange(500) // 100, "s
          10_000),
         ({"A": SINCE_NS // 10**9, "B": SINCE_NS % 10**9}, "t_us=A:s+B:ns", 10_000),
         ({"Timestamp": SECONDS, "Milliseconds": np.arange(500) * 10}, "", 10_000),
+        ({"ticks": np.arange(500) * 250 + 2**32 - 999}, "t_us=ticks:x40", 10_000),
     ],
 )  # fmt: skip
 def test_the_time_is_found_among_columns(tmp_path, columns, mapping, step_us):
@@ -327,6 +344,7 @@ def test_the_time_is_found_among_columns(tmp_path, columns, mapping, step_us):
         *("imu.gyro.{}", "w{}", "gyr_{}", "AngVel{}", "Gyroscope_{}", "{}gyro", "Gy{}", "g{}_mean"),
         *("w_RS_S_{} [rad s^-1]", "raw_angular_rate_{}_rad_per_s", "{} (rad/sec)", "g{}_rad_s"),
         *("Gyro{}_left_leg", "gyro_{}_clean", "in_anglvel_{}", "{}_GYRO_OUT", "AngleRate{}"),
+        *("rot_rate_{}", "giro_{}"),
         *("{}-axis (rad/s)", "imu rate {} [radians per second]", "UncompGyro{}", "{}_rate"),
         *(
             "imu2_g{}",

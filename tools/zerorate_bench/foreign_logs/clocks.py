@@ -23,6 +23,10 @@ log.csv("nanoseconds, no unit named",
 log.csv("a time whose unit nothing tells", lambda w: plain(w, "t", w.whole(1e3)))
 log.csv("micros() that runs over after 71 minutes",
     lambda w: plain(w, "micros", w.whole(1e6, 2**32 - 10**7) % 2**32))
+log.csv("micros() after 20 minutes, as many as seconds since 1970",
+    lambda w: plain(w, "timestamp", w.whole(1e6, 1_300_000_000)))
+log.csv("ticks of 1/32768 s",
+    lambda w: plain(w, "ticks", w.whole(2**15)), words=f"--map t_us=ticks:x{1e6 / 2**15}")
 log.csv("seconds and nanoseconds in two columns",
     lambda w: table("header.stamp.sec,header.stamp.nanosec,g{xyz}_dps,a{xyz}_g,temp_c",
         *np.divmod(w.whole(1e9, 1_777_000_000 * 10**9), 10**9), w.dps, w.g, w.degc))

@@ -346,3 +346,27 @@ def _of_two_devices(world: World) -> pd.DataFrame:
 
 log.csv("rows of two sensors of two devices: time,device,sensor,x,y,z", _of_two_devices,
     words="--gyro-unit dps --accel-unit g")
+
+
+def _motec(world: World) -> str:
+    """Settings in as many cells as rows have may stand above MoTeC's table."""
+    names = "Time,G Force {XYZ},Gyro Roll Velocity,Gyro Pitch Velocity,Gyro Yaw Velocity"
+    above = '"Format","MoTeC CSV File"\n"Log Date","1/5/2026","","","Origin","0.0","s"\n'
+    above += '"Log Time","14:17:54","","","Start Time","0.0","s"\n\n'
+    head, *rows = csv(table(names, world.t_s, world.g, world.dps), quoting=1).splitlines()
+    units = '"s","G","G","G","deg/s","deg/s","deg/s"'
+    return above + "\n".join([head, units, "", *rows, ""])
+
+
+log.text("MoTeC, its CSV: settings above the table, units beneath the names", _motec, "in.csv")
+
+
+def _topics(world: World) -> str:
+    lines = (f"dev/{of} {json.dumps({'ts': at, **dict(zip('xyz', three))})}\n"
+        for at, *both in zip(world.whole(1e3).tolist(), world.g.tolist(), world.dps.tolist())
+        for of, three in zip(("accel", "gyro"), both))
+    return "".join(lines)
+
+
+log.text("mosquitto_sub -v: a topic before the JSON of each sensor", _topics,
+    words="--gyro-unit dps --time-unit ms")

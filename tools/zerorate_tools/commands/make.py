@@ -68,7 +68,8 @@ def run_simulate(arguments: argparse.Namespace) -> None:
 _EPILOG = """\
 A mapping names a column of the recording, where it comes from, and its unit:
   --map gx=gyro_x:rad/s --map temp=T:degc --map t_us=time:ms --map vdd_mv=volts:x1000
-  --map t_us=sec:s+nanosec:ns adds two; --map gx=-gyro_x changes a sign; --map temp=none leaves out.
+  --map t_us=sec:s+nanosec:ns adds two; --map gx=-gyro_x changes a sign; --map temp=none leaves out;
+  --map t_us=ticks:x30.5 takes ticks of 30.5 us; --map gx=rate_x:x0.1 takes tenths of dps.
 units: time s ms us ns; rates dps mdps rad/s lsb; acceleration g mg ug m/s2 lsb; temperature degc
 k degf lsb; an extra channel takes a factor. Usual names, and a unit at their end (gx_dps), need no
 mapping. Columns without names are 1, 2, 3; an (n, 3) variable of a .mat is name[0] to name[2].

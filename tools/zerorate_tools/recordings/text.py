@@ -2,6 +2,7 @@
 
 import codecs
 import io
+import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -25,6 +26,8 @@ _MARKS = {
     b"\xfe\xff": "utf-16",
     b"\xef\xbb\xbf": "utf-8",
 }
+#: Of no ASCII: Chinese ones have two bytes each, accents stand alone.
+_LETTERS = re.compile(rb"[\x80-\xff]+(?=[\0-\x7f])")
 
 
 def open_text(path: Path, encoding: str = "utf-8") -> tuple[pa.NativeFile, Callable[[], int]]:
@@ -137,5 +140,6 @@ def _encoding(content: bytes) -> str:
         # to be continued: a letter cut in two at the end is no sign of another encoding
         codecs.getincrementaldecoder("utf-8")().decode(content)
     except UnicodeDecodeError:
-        return "latin-1"
+        in_pairs = all(len(run) % 2 == 0 for run in _LETTERS.findall(content))
+        return "gb18030" if in_pairs else "latin-1"
     return "utf-8"

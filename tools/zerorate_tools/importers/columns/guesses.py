@@ -14,8 +14,9 @@ from .units import ACCEL_G, RATE_DPS, RAW, TIME_S, factors_of, kind_of, unit_by_
 
 GRAVITY = {unit: 1.0 / in_g for unit, in_g in ACCEL_G.items()}
 _GRAVITY_WITHIN = 0.15
-#: Seconds since 1970 of the years 2001 and 2100.
-_CALENDAR_S = (1e9, 4.1e9)
+#: Seconds since 1970 of the years 2001 and 2100, which a counter since power-on may be, too: by its
+#: steps, which are as short as a second or so in a date.
+_CALENDAR_S, _STEP_OF_DATE_S = (1e9, 4.1e9), 1.5
 DEGC, _KELVIN = (-60.0, 130.0), (230.0, 400.0)
 #: The widest range of these sensors, and a little.
 FASTEST_DPS = 2050.0
@@ -296,9 +297,10 @@ def by_habit(target: str, column: str, names: list[str]) -> tuple[str, str] | No
 
 
 def _by_calendar(values: np.ndarray) -> tuple[str | None, str]:
-    middle = float(np.median(values))
+    middle, step = float(np.median(values)), _usual_step(values)
     for unit, seconds in TIME_S.items():
-        if _CALENDAR_S[0] < middle * seconds < _CALENDAR_S[1]:
+        is_date = _CALENDAR_S[0] < middle * seconds < _CALENDAR_S[1]
+        if is_date and step * seconds <= _STEP_OF_DATE_S:
             year = np.datetime64(int(middle * seconds), "s").astype("datetime64[Y]")
             return unit, f"since 1970 that is the year {year}"
     return None, ""
@@ -417,7 +419,6 @@ def _usual_step(values: np.ndarray) -> float:
 def _time_words(values: np.ndarray) -> str:
     likely = likely_units_of_time(_usual_step(values))
     would = " or ".join(f"{unit} ({hz:.4g} Hz)" for unit, hz in likely.items())
-    rows = " if it counts them" if counts_rows(values) else " if it is no time in these"
-    return (
-        f"--time-unit {would or 'with one of ' + ', '.join(TIME_S)}; or --hz, rows a second,{rows}"
-    )
+    ticks = ", or --map t_us=COLUMN:xSIZE, ticks of SIZE us, if it is no time in these"
+    rows = ", if it counts them" if counts_rows(values) else ticks
+    return f"{f'--time-unit {would}; or ' if would else ''}--hz, rows a second{rows}"

@@ -54,8 +54,9 @@ def map_words(target: str, column: str, unit: str | None = None) -> str:
 
 
 def parsed_mapping(text: str) -> Mapped:
-    """`gx=gyro_x:rad/s`, `gx=gyro_x:x0.1` for tenths of dps, `temp=none`, `t_us=sec:s+nanosec:ns`
-    or, for an extra channel, `vdd_mv=volt:x1000`. Raises ValueError."""
+    """`gx=gyro_x:rad/s`, `gx=gyro_x:x0.1` for tenths of dps, `temp=none`, `t_us=sec:s+nanosec:ns`,
+    `t_us=ticks:x30.5` for ticks of so many microseconds or, for an extra channel,
+    `vdd_mv=volt:x1000`. Raises ValueError."""
     target, equals, rest = text.partition("=")
     if not equals or not target or not rest:
         raise ValueError(f"{text!r} is no mapping: write gx=COLUMN:UNIT")
@@ -79,7 +80,7 @@ def _check_unit(mapped: Mapped) -> None:
     for unit in (mapped.unit, mapped.plus and mapped.plus[1]):
         if unit is None:
             continue
-        sized = mapped.target not in (TIME, TEMP) and factor_in(unit)
+        sized = mapped.target != TEMP and not mapped.plus and factor_in(unit)
         if mapped.target in COLUMNS and not sized:
             known = units_of(mapped.target)
             if unit not in known:

@@ -12,14 +12,14 @@ _MADE = "(?:cal|raw|mean|avg|out)?"
 _NUMBER = r"\d?"
 _CHIP = r"(?:(?:bm[agi]|i[ai]m|icm|lis|lsm|mpu)\d[a-z0-9]*?)?"
 _GYRO = re.compile(
-    r"(?:.*(?:gyroscope|gyrorotation|gyro|gyr|angularvelocity|ang(?:le|ular)?rate|angl?vel|rotationrate|omega|angular)"
+    r"(?:.*(?:gyroscope|gyrorotation|g[iy]ro|gyr|angularvelocity|ang(?:le|ular)?rate|angl?vel|rot(?:ation)?rate|omega|angular)"
     rf"\d?{_CHIP}(?:uncalibrated|uncal|calibrated|corrected|unfilt|adc|raw|rad|data|rate|dps|dof|values?|v"
     r"|static|noise){0,2}"
     r"|(?:.*imu\d*)?(?:gy|[wg]|wb|pqr|absr|rate|dps))"
     + f"{_AXIS}{_MADE}{_NUMBER}$|^{_AXIS}(?:gyroscope|gyro|gyr|rate){_MADE}$"
 )
 _ACCEL = re.compile(
-    r"(?:.*(?:accelerometer|acceleration|accel|acce|accl|acc|specificforce)"
+    r"(?:.*(?:accelerometer|acceleration|accel|acce|accl|acc|acel|specificforce)"
     rf"\d?{_CHIP}(?:uncalibrated|uncal|calibrated|smooth|adc|raw|data|dof|ms2|m?g|values?|v|vector|ln|wr|static"
     r"|noise|includinggravity){0,2}"
     r"|(?:.*imu\d*)?(?:ac?|gf|fb?|abs))"
@@ -64,7 +64,7 @@ _PARTS = {"real": "w", "i": "x", "j": "y", "k": "z"}
 #: What aircraft call their rates.
 BODY_RATES = dict(zip(("gx", "gy", "gz"), "pqr"))
 _TURNS = {"roll": "x", "pitch": "y", "yaw": "z"}
-_TURN_RATE = re.compile("(roll|pitch|yaw)rate|(?:(?<=gyro)|(?<=rate))(roll|pitch|yaw)$")
+_TURN_RATE = re.compile("(roll|pitch|yaw)(?:rate|velocity)|(?<=gyro|rate)(roll|pitch|yaw)$")
 #: What browsers call theirs.
 _BROWSERS = dict(zip(("gx", "gy", "gz"), ("beta", "gamma", "alpha")))
 
@@ -177,8 +177,8 @@ def is_step(name: str) -> bool:
 
 
 def is_clock(name: str) -> bool:
-    """Whether a column is called as a count of something's ticks."""
-    return bool(re.search("tick|clock|clk|cycle", spelled(name)))
+    """Whether a column is called as a time, or as a count of something's ticks."""
+    return bool(re.search("time|tick|clock|clk|cycle", spelled(name)))
 
 
 def in_units_of_time(names: list[str]) -> list[str]:

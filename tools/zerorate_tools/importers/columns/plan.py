@@ -23,6 +23,7 @@ from .guesses import (
     is_unit,
     likely_columns,
     likely_time,
+    likely_units_of_time,
     of_long_time,
     only_grows,
     ready_words,
@@ -92,13 +93,17 @@ def planned(
     asked: dict[str, str] = {}
     first = table.first_rows(plan.columns)
     ask = (plan, table, units or {}, first, path)
-    time_unit = _unit(TIME, *ask, None) if TIME in wanted else None
+    scaled = _of_attitude(wanted, first)
+    time_unit: str | None = "us"
+    if TIME in given and (size := factor_in(given[TIME].unit or "")):
+        scaled[TIME] = size * TIME_S["us"]
+    else:
+        time_unit = _unit(TIME, *ask, None) if TIME in wanted else None
     if time_unit and "time" not in plan.typed:
         _refuse_other_times(wanted[TIME], time_unit, table, first, path)
-    t_s = wanted[TIME].taken(first, TIME_S[time_unit]) if time_unit else None
-    scaled = _of_attitude(wanted, first)
+    t_s = wanted[TIME].taken(first, scaled.get(TIME, TIME_S[time_unit])) if time_unit else None
     for target, mapped in wanted.items():
-        factor = factor_in(mapped.unit) if mapped.unit else scaled.get(target)
+        factor = factor_in(mapped.unit) if mapped.unit and target != TIME else scaled.get(target)
         if target not in COLUMNS or factor:
             plan.factors[target] = (factor or 1.0, 0.0)
             continue
@@ -343,7 +348,7 @@ def hz_words(table: Table) -> str:
             unit = unit_in_name(TIME, name) or likely_time(np.array([0.0, step]))
             return f"--hz {1 / (step * TIME_S[unit]):.4g} (as column {name!r} says in {unit})"
         steps = np.diff(values)
-        if only_grows(values) and steps.min() > 0:
+        if only_grows(values) and steps.min() > 0 and likely_units_of_time(float(np.median(steps))):
             words = map_words(TIME, name, likely_time(values))
             if (steps % 1).any() and not of_long_time(name):
                 return words

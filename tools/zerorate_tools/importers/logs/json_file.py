@@ -9,6 +9,7 @@ import re
 from ast import literal_eval
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
 from dataclasses import replace
 from itertools import chain, islice
 from pathlib import Path
@@ -47,9 +48,21 @@ def read(path: Path, instance: int = 0) -> Table:
         return replace(_of_records(lambda dropped: iter(held), path), said_hz=said_hz)
     if not isinstance(held, dict):
         raise BadRecording(path, "JSON, and no records in it", do=_DO)
-    columns = {k: list(v.values()) if isinstance(v, dict) else v for k, v in held.items()}
-    arrays = {k: np.array(v) for k, v in columns.items() if isinstance(v, list)}
+    arrays: dict[str, np.ndarray] = {}
+    for name, column in _columns(held):
+        with suppress(ValueError):  # lists of several lengths are no column
+            arrays[name] = np.array(column)
     return replace(table_of_arrays(arrays, path, _DO), said_hz=said_hz)
+
+
+def _columns(held: dict[str, Any]) -> Iterator[tuple[str, Any]]:
+    """The lists of an object, and of objects in it, as gyro.x; pandas' {row: value} is one."""
+    for name, value in held.items():
+        inner = [*value.values()] if isinstance(value, dict) else []
+        if any(isinstance(one, (dict, list)) for one in inner):
+            yield from ((f"{name}.{of}", column) for of, column in _columns(value))
+        else:
+            yield name, inner or value
 
 
 def _named(held: Any) -> Any:
@@ -124,8 +137,8 @@ def _holds_all(held: Any) -> bool:
     held = _inner(held)
     if _of_edge_impulse(held) is not held:
         return True
-    values = held.values() if isinstance(held, dict) else ()
-    long = [v for v in values if isinstance(v, (dict, list)) and len(v) > _LONGEST_LIST]
+    columns = _columns(held) if isinstance(held, dict) else ()
+    long = [v for _, v in columns if isinstance(v, list) and len(v) > _LONGEST_LIST]
     records = sum(map(_is_records, long))
     return records == 1 or records < len(long)
 

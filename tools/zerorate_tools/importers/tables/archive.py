@@ -78,6 +78,10 @@ def folder_of_tables(
         held = ", ".join(file.name for file, _ in (rates or found)[:_TOLD])
         problem = "several tables that may hold rates" if rates else "no table with rates in it"
         one_of = f" in {held}" if held else ""
+        if len(rates) > _TOLD and all(_is_row(table) for _, table in rates[:_TOLD]):
+            problem = f"{len(rates)} files of one row, as KITTI writes"
+            do = f"write the rows into one file: cat FOLDER/*{rates[0][0].suffix} > all.txt"
+            raise BadRecording(path, problem, do=do)
         do = f"name a file{one_of}, or the folder of a ROS 2 bag or of a phone's tables"
         raise BadRecording(path, problem, do=do)
     return _by_shared_time(tables, path)
@@ -116,6 +120,10 @@ def with_axes(table: Table, file: Path) -> Table:
 
     calendar = frozenset(name for name in own if own[name] in table.calendar)
     return replace(table, names=[*own], chunks=chunks, calendar=calendar, notes=[])
+
+
+def _is_row(table: Table) -> bool:
+    return len(table.first_rows(table.names[:1]).get(table.names[0], ())) == 1
 
 
 def _hold_rates(tables: dict[str, Table]) -> bool:

@@ -33,12 +33,16 @@ _LABEL = re.compile(
     r"""[:=][\s"'\[({]*$|\w\s+\[\s*$|^\W*[\w.]*[A-Za-z]\w*/[\w./]*[A-Za-z]\w*\s+$"""
 )
 _WORDS = re.compile(r"[A-Za-z_][\w./]*(?:[ -][A-Za-z_][\w./]*)*")
+#: Whose names follow in brackets: dev/gyro {"ts": or sensor_gyro(now:
+_OWNER = re.compile(r"\s*([A-Za-z][\w./-]*)\s*[({].*\w")
 #: A pair whose value is a word.
 _WORDED = re.compile(r"\w+=[^\s=:,]*[^\W\d][^\s=:,]*[\s,]+")
 #: A name and its unit: [gyro/mdps].
 _NAMED_UNIT = re.compile(r"[\[(]([A-Za-z]+)/([^\[\]()\s]+)[\])]")
 #: What evtest prints of an input device, and how many of an axis' value are a deg/s or a g.
 _EVENT = re.compile(rb"Event: time ([\d.]+), type \d+ .*code \d+ \((\w+)\), value (-?\d+)")
+#: What cantools prints before the signals of a frame.
+_FRAME = re.compile(rb"\s*\(([\d.]+)\) .* :: ")
 _IN_BRACKETS = re.compile(r"\s*[\[(]([^\[\]()]+)[\])]")
 _BEHIND = re.compile(r"[\s\])}]*([^\s,;|\])}]+)(?!\s*[:=])")
 #: ESP-IDF's log: I (320) imu: gx=0.8, in milliseconds.
@@ -76,6 +80,7 @@ class Reader:
         """The names of a line's numbers, and these; none of a comment, or an item of a list."""
         line = COLOUR.sub(b"", line) if b"\x1b" in line else line
         line = _EVENT.sub(rb"Event time: \1, \2: \3", line)
+        line = _FRAME.sub(rb"time: \1 ", line) if b" :: " in line else line
         indent = len(line) - len(line.lstrip(b" \t"))
         if heading := _HEADING.match(line):
             self._heading, self._indent = heading[2].decode("utf-8", "replace"), indent
@@ -94,6 +99,8 @@ def _named(heading: str, beneath: bool, texts: tuple[bytes, ...]) -> Kind:
     """
     whose, unit = _without_unit(heading)
     words = [_WORDED.sub("", text.decode("utf-8", "replace")) for text in texts]
+    if not heading and (owner := _OWNER.match(words[0])):
+        whose = owner[1]
     names, units = [], []
     for at in range(len(words) - 1):
         text, own = _without_unit(words[at])

@@ -11,6 +11,7 @@ import numpy as np
 from ...errors import BadRecording
 from ...recordings.text import head
 from ..columns.guesses import counts_rows, only_grows
+from ..columns.names import gyro_groups
 from ..columns.units import without_unit
 from .sentences import COLOUR, COMMENTS, Kind, Reader, Rows, columns_of, is_unit, kinds_in
 
@@ -36,10 +37,16 @@ DATE = re.compile(
     rf"{_ISO}|(?:{DAY})?\d\d?:\d\d(?::\d\d)?(?:(?<=:\d\d:\d\d)|(?=\.))([.,:]\d+)?(\s*[ap]\.?m\.?)?$",
     re.I,
 )
-#: What monitors put before each line: 12:00:00.250 -> or [2026-05-01 12:00:00.250].
+#: What monitors put before each line: 12:00:00.250 -> or [2026-05-01 12:00:00.250], and those of
+#: CoolTerm, Tera Term, Zephyr, ESP-IDF, Segger and Nordic.
 _CLOCK = re.compile(
-    rb"(?m)^(?:([\d:.]+) -> |\[((?:[\d/.-]+[ T])?\d\d?:\d\d:\d\d(?:[.,]\d+)?)\][ \t]*)"
-    rb"(?=[^\r\n]*?([,;\t |]))"
+    rb"""(?mx)^(?: ([\d:.]+)[ ]->[ ]
+    | \[(?:\w{3}[ ]\w{3}[ ]\d\d[ ])? ((?:[\d/.-]+[ T])?\d\d?:\d\d:\d\d(?:[.,]\d+)*) (?:[ ]\d{4})?\]
+      [ \t]*(?:<\w+>[ ][\w.-]+:[ ])?
+    | (\d{4}-\d\d-\d\d[ ]\d\d:\d\d:\d\d(?:\.\d+)?)[ ](?=[-+.\d]+[,;\t])
+    | [EWIDV][ ]\(([\d:.]+)\)[ ][\w.-]+:[ ]
+    | (?:\d\d?>|<\w+>[ ][\w.-]+:)[ ] )
+    (?=[^\r\n]*?([,;\t |]))"""
 )
 #: A line of such beneath the names says their units.
 _UNIT = re.compile(
@@ -60,6 +67,25 @@ _RESOLUTION = re.compile(r"\((ABS_R?[XYZ])\)(?:(?!Event).)*?Resolution\s+(\d+)")
 _SCALE = re.compile(rf"([tga])scale\s*,\s*({_NUMBER.pattern[:-1]})\s*,*\s*$")
 _SCALED = re.compile(r"t|[ga][xyz]")
 _OF_COUNTS = {"t": "s", "g": "rad/s", "a": "g"}
+#: What tells texts that are no tables, what they are, and what to do.
+_NO_TABLES = tuple(
+    (re.compile(told), problem, do)
+    for told, problem, do in (
+        (r"\Aversion https://git-lfs", "a pointer of Git LFS, not the file",
+         "fetch the file itself: git lfs pull"),
+        (r"\A\s*<\?xml", "XML, which is no table",
+         "write its table as CSV by the program that made it"),
+        (r"\A *\([\d.]+\) +\w+ +[\dA-F]+(?:#| +\[\d+\])(?!.*::)|\Adate .*\n+base (?:hex|dec)",
+         "frames of a CAN bus",
+         "write their signals: cantools decode --single-line FILE.dbc < LOG"),
+        (r"\A[%#](?:RAW|CORR)IMU", "angles turned between lines, not rates",
+         "write rates: angles times the lines of a second, in the unit of your IMU"),
+        (r"<UBX\(ESF-", "values of 24 bits, each behind a number of its kind",
+         "write kinds 14, 13, 5 as gx, gy, gz (4096 a deg/s), 16 to 18 as ax to az (1024 a m/s2)"),
+    )
+)  # fmt: skip
+#: Numbers in the first row, the header's line or None, the first row's line, delimiter.
+_Found = tuple[int, int | None, int, str]
 
 
 @dataclass(frozen=True)
@@ -95,12 +121,9 @@ def sniffed(path: Path) -> Form:
     if "\x00" in text[:1000] and not text[:20].isprintable():
         do = "name a table, or a log of a kind that `zerorate import --help` lists"
         raise BadRecording(path, "neither text nor a log of a known kind", do=do)
-    if text.startswith("version https://git-lfs"):
-        do = "fetch the file itself: git lfs pull"
-        raise BadRecording(path, "a pointer of Git LFS, not the file", do=do)
-    if text.lstrip().startswith("<?xml"):
-        do = "write its table as CSV by the program that made it"
-        raise BadRecording(path, "XML, which is no table", do=do)
+    for told, problem, do in _NO_TABLES:
+        if told.search(text):
+            raise BadRecording(path, problem, do=do)
     lines = text.splitlines()
     if not whole:
         lines = lines[:-1]
@@ -143,9 +166,16 @@ def _scaled(form: Form, said: dict[str, tuple[str, float]]) -> Form:
 
 
 def without_arrows(content: bytes) -> bytes:
-    """A clock before a line as a cell of its own."""
-    content = COLOUR.sub(b"", content)
-    return _CLOCK.sub(lambda at: (at[1] or at[2].replace(b" ", b"T")) + at[3], content)
+    """What a monitor puts before a line as a cell of its own: its clock, or nothing."""
+    return _CLOCK.sub(_clock_alone, COLOUR.sub(b"", content))
+
+
+def _clock_alone(at: re.Match[bytes]) -> bytes:
+    clock = next(filter(None, at.groups()[:-1]), b"").replace(b" ", b"T")
+    if clock.isdigit():  # ESP-IDF's milliseconds
+        minutes, ms = divmod(int(clock), 60_000)
+        clock = b"%d:%02d:%06.3f" % (*divmod(minutes, 60), ms / 1e3)
+    return (clock.replace(b",", b"") if b"." in clock else clock) + at[5] if clock else b""
 
 
 def _of_sentences(kinds: tuple[Kind, ...], lines: list[bytes], encoding: str) -> Form:
@@ -176,7 +206,7 @@ def _goes_on(cells: list[str]) -> bool:
 
 
 def _table_in(lines: list[str], every: list[str], encoding: str, path: Path) -> Form:
-    found = [_with(delimiter, lines) for delimiter in _DELIMITERS]
+    found = [_of_rates(delimiter, lines) for delimiter in _DELIMITERS]
     if not any(found):
         found = [_with(delimiter, lines, 1) for delimiter in _DELIMITERS]
     best = max((one for one in found if one), key=lambda one: one[0], default=None)
@@ -215,6 +245,20 @@ def _table_in(lines: list[str], every: list[str], encoding: str, path: Path) -> 
         note=note,
         said_hz=_rate_said(lines[:skip]),
     )
+
+
+def _of_rates(delimiter: str, lines: list[str]) -> _Found | None:
+    """As `_with`, of the first table whose line of names has rates, where settings and their names
+    stand above it."""
+    found = _with(delimiter, lines)
+    begins_with_rows = found is not None and found[1] is None
+    for at, line in enumerate(lines if not begins_with_rows else ()):
+        cells = _cells(line, delimiter)
+        if len(cells) >= _CELLS and not _numbers(cells, delimiter) and gyro_groups(cells):
+            named = _with(delimiter, lines[at:])
+            if named and named[1] is not None:
+                return named[0], at + named[1], at + named[2], delimiter
+    return found
 
 
 def _says_its_names(line: str, lines: list[str], delimiter: str) -> bool:
@@ -266,12 +310,9 @@ def _rate_said(lines: list[str]) -> float | None:
     return float(found[1]) * (1000.0 if found[2].lower() == "k" else 1.0) if found else None
 
 
-def _with(
-    delimiter: str, lines: list[str], least: int = _CELLS
-) -> tuple[int, int | None, int, str] | None:
-    """(numbers in the first row, the header's line or None, the first row's line, delimiter) for
-    the first two lines of as many cells, at least so many, of which the second has numbers; or
-    None. A comment of as many cells without numbers is a header, too."""
+def _with(delimiter: str, lines: list[str], least: int = _CELLS) -> _Found | None:
+    """What the first two lines tell of as many cells, at least so many, of which the second has
+    numbers; or None. A comment of as many cells without numbers is a header, too."""
     above: tuple[int, list[str]] | None = None
     comment: list[str] = []
     for number, line in enumerate(lines):
