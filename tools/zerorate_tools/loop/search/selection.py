@@ -32,12 +32,15 @@ class Found:
 
     @property
     def probabilities(self) -> dict[str, float]:
-        """The chance that it is itself, or each of what may stand in its place, by name, the
-        likeliest first; chances below one in twenty are left out."""
-        nats = {self.candidate.label: 0.0, **self.rivals}
+        """The chance that it is itself, and of each that may stand in its place, by name, the
+        likeliest first; others' chances below one in twenty are left out."""
+        own = self.candidate.label
+        nats = {own: 0.0, **self.rivals}
         names = sorted(nats, key=lambda name: -nats[name])
         chances = softmax([nats[name] for name in names])
-        return {name: float(p) for name, p in zip(names, chances) if p > np.exp(-NATS)}
+        return {
+            name: float(p) for name, p in zip(names, chances) if name == own or p > np.exp(-NATS)
+        }
 
     @property
     def confounded_with(self) -> list[str]:
