@@ -94,6 +94,7 @@ def test_acceleration_adds_no_more_than_a_gyroscope_follows_it_by(reach_g, found
     session.rate_dps = 0.005 * session.rate_dps + 0.05 / reach_g * session.sources["acc_x"][:, None]
     r, pose = Regression([session]), Candidate("linear-acceleration", (Term("acc_x"),), "catalogue")
     alone = r.gains([], [pose.terms]).sum()
+    r.heed_data_sheets([])
     testing = SimpleNamespace(
         regression=r, pool=[pose], tried=lambda c: 1.0, is_by_time=lambda c: False
     )

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...model.term import Term, Terms
 from ..read.sessions import Session, block_basis
-from .regression import Regression, predicted
+from .regression import Regression, is_of_force, of_data_sheets, predicted
 from .shrunk import shrink
 from .smooth import curve_of, smooth
 
@@ -38,7 +38,8 @@ def ordinary(
     coefficients: Collection[np.ndarray] = (),
 ) -> np.ndarray:
     """(terms, 3) dps per unit by least squares over blocks, an offset a session, effects subtracted
-    first; play operators, which are much alike, are shrunk a little, and bends made smooth.
+    first; play operators, which are much alike, are shrunk a little, acceleration by data sheets as
+    if all that is to be explained were noise, and bends made smooth.
     """
     curve = curve_of(terms)
     if curve and not len(effects):
@@ -51,11 +52,12 @@ def ordinary(
         x.append(s.less_offsets(columns, there)[there])
         y.append(s.less_offsets(rate, there)[there])
     scale = np.maximum(np.vstack(x).std(axis=0), 1e-300)
-    plays = [_RIDGE if t.memory == "play" else 0.0 for t in terms]
-    if any(plays):
-        rows = sum(map(len, x))
-        x.append(np.diag(np.sqrt(rows * np.array(plays)) * scale))
-        y.append(np.zeros((len(plays), 3)))
+    rows, known = sum(map(len, x)), of_data_sheets(float(np.vstack(y).var()))
+    plays = np.array([t.memory == "play" for t in terms])
+    precision = plays * rows * _RIDGE * scale**2 + [known * is_of_force(t) for t in terms]
+    if precision.any():
+        x.append(np.diag(np.sqrt(precision)))
+        y.append(np.zeros((len(terms), 3)))
     return np.linalg.lstsq(np.vstack(x) / scale, np.vstack(y), rcond=1e-12)[0] / scale[:, None]
 
 

@@ -18,6 +18,9 @@ from .noise import GRID, IS_STEEP
 
 #: Times the usual distance from the median of so many neighbours.
 _OUTLIER, _NEAR = 6.0, 9
+#: Standard deviation, before anything is seen, of what an acceleration of 1 g adds: dps, by the
+#: data sheets of MEMS gyroscopes. At rest it varies little, and follows what else it likes.
+_PER_G = 0.1
 #: By how much squares of acceleration are shrunk, of their own whitened squares: at rest their sum
 #: is gravity's, a constant, and beside acceleration nothing but noise tells its coefficient.
 _SUM_OF_SQUARES = 1e-3
@@ -52,6 +55,7 @@ class Regression:
         self.outliers = 0
         self.axes = np.eye(3)
         self._precision: Mapping[Term, float] = {}
+        self._of_data_sheets = 0.0
         self._cache: dict[Term, list[np.ndarray]] = {}
         self._extra: Events = []
         self.prepare()
@@ -146,9 +150,10 @@ class Regression:
     def _shrink(self, products: np.ndarray, terms: Terms) -> None:
         """Shrink terms that are the first of (S, ..., J, J), each session's share of it alike."""
         for i, term in enumerate(terms):
-            if term.source.startswith("acc_") and term.power == 2:
+            if is_of_force(term) and term.power == 2:
                 products[..., i, i] *= 1.0 + _SUM_OF_SQUARES
-            products[..., i, i] += self._precision.get(term, 0.0) / len(self.sessions)
+            known = self._precision.get(term, self._of_data_sheets * is_of_force(term))
+            products[..., i, i] += known / len(self.sessions)
 
     def fit(self, terms: Terms) -> Fit:
         """Joint fit with the noise's colour refitted."""
@@ -171,6 +176,12 @@ class Regression:
             self.outliers += count
         self.prepare()
         self.scale = session_scale(self.cross_products(terms))
+        self.heed_data_sheets(terms)
+
+    def heed_data_sheets(self, terms: Terms) -> None:
+        """Shrink all acceleration from now on, by the white noise beside the terms."""
+        variance = self.fit(terms).base.variance / (self.axes**2).sum(axis=1)
+        self._of_data_sheets = of_data_sheets(float(variance.mean()))
 
     def gains(self, terms: Terms, candidates: Sequence[Terms], chunk: int = 400) -> np.ndarray:
         """(K, A) likelihood ratio of each candidate's columns beside the terms. candidates: tuples
@@ -184,6 +195,16 @@ class Regression:
                 g = self.cross_products(terms, [candidates[i] for i in part])
                 out[part] = ratios(g, fit_base(g, self.scale), self.scale)
         return np.maximum(out, 0.0)
+
+
+def is_of_force(term: Term) -> bool:
+    """Whether a term follows acceleration."""
+    return term.source.startswith("acc_")
+
+
+def of_data_sheets(variance: float) -> float:
+    """Precision of a term of acceleration about zero, over the variance of a block, dps^2."""
+    return variance / _PER_G**2
 
 
 def predicted(terms: Terms, coefficients: Collection[np.ndarray], session: Session) -> np.ndarray:

@@ -16,6 +16,7 @@ import numpy as np
 from ...model.term import Terms
 from ..read.sessions import Session, block_basis
 from .likelihood import TINY
+from .regression import is_of_force, of_data_sheets
 from .shrunk import SIZES
 
 #: Lengths of the waves, of the range of temperature.
@@ -80,6 +81,10 @@ def _curve(
     left, waves = (v - own @ (own.T @ v) for v in (rates, shares))
     deviation = _deviation(at, waves, left, free)
     rest = rates - shares @ deviation
+    known = of_data_sheets(float(rates.var()))
+    precision = np.array([0.0, *(known * is_of_force(t) for t in beside)])
+    line = np.vstack([line, np.diag(np.sqrt(precision) / scale)])
+    rest = np.vstack([rest, np.zeros((plain, 3))])
     fitted = np.linalg.lstsq(line, rest, rcond=1e-12)[0] / scale[:, None]
     return deviation + at[:, None] * fitted[0], fitted[1:]
 

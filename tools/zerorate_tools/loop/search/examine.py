@@ -5,10 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...model.term import Term, Terms
+from ...model.term import Terms
 from ..fit.common_cause import RARE
 from ..fit.line import less_slope, ordinary
-from ..fit.regression import Regression, predicted
+from ..fit.regression import predicted
 from ..fit.single import PiecesByLine
 from ..read.sessions import Session
 from . import drift_test
@@ -19,9 +19,6 @@ from .multiple_testing import MultipleTesting
 from .refine import drawn, refined
 from .selection import Found
 
-#: Standard deviation, before anything is seen, of what an acceleration of 1 g adds: dps, by the
-#: data sheets of MEMS gyroscopes. At rest it varies little, and follows what else it likes.
-_PER_G = 0.1
 #: Of the error without it that an effect may be. Lags of real parts are 0.6 times; what tells a
 #: start's decay from a warm-up by cancelling both is 6 times and more.
 _MOST_TIMES = 2.0
@@ -74,8 +71,7 @@ class Examiner:
 
     def _by_likelihood(self, best: Candidate, nuisances: Terms) -> Decision:
         r, tried = self.regression, self.testing.tried(best)
-        with r.shrinking(_of_data_sheets(r, best.terms, nuisances)):
-            ratio = float(r.gains(nuisances, [best.terms]).sum())
+        ratio = float(r.gains(nuisances, [best.terms]).sum())
         if self.testing.is_by_time(best):
             return drift_test.considered(r, nuisances, best, ratio, tried)
         return decide(r, nuisances, best, ratio, tried, self.singles)
@@ -99,15 +95,6 @@ class Examiner:
         if reason:
             return replace(decision, accepted=False, reason=reason)
         return decision.on_pieces(judged, *beside, best.terms)
-
-
-def _of_data_sheets(r: Regression, terms: Terms, nuisances: Terms) -> dict[Term, float]:
-    """Precision of terms of acceleration, over the variance of a block beside the nuisances."""
-    own = [t for t in terms if t.source.startswith("acc_")]
-    if not own:
-        return {}
-    variance = r.fit(nuisances).base.variance / (r.axes**2).sum(axis=1)
-    return dict.fromkeys(own, float(variance.mean()) / _PER_G**2)
 
 
 def cancels(sessions: Sequence[Session], beside: Terms, terms: Terms) -> bool:
