@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from scipy.stats import f as fisher
 from zerorate_tools.loop.motion import by_windows, heading, scales_and_timing, windows
+from zerorate_tools.loop.motion.clock import evenly
 from zerorate_tools.loop.motion.device import LEVEL, DifferentDevices, Shown, check_one_device
 from zerorate_tools.loop.motion.heading import heading_lost
 from zerorate_tools.loop.motion.moving import Moving, _attitude_by, check_axes, moving_of
@@ -313,3 +314,17 @@ def test_a_heading_that_is_far_off_anyway_hardly_counts_but_one_that_gets_so(
     squares = np.array([[1.0] * 9 + [without], [0.25] * 9 + [with_it]])
     weight = heading._weights(squares)
     assert bool(weight[-1] > 0.5 * weight[0]) is counts
+
+
+@pytest.mark.parametrize("jitter_ms, lost, most_ms", [(0, 0.0, 1e-3), (0, 0.03, 1e-3), (4, 0.0, 1)])
+def test_samples_are_read_on_an_even_clock(jitter_ms, lost, most_ms):
+    rng, taken_us = np.random.default_rng(1), np.arange(20_000) * 10_000
+    late_us = rng.integers(0, 1000 * jitter_ms + 1, len(taken_us))
+    kept = rng.random(len(taken_us)) >= lost
+    taken_us, stamped_us = taken_us[kept], (taken_us + late_us)[kept]
+    stamped_us[5000:] += 100_000
+    clock_us, put = evenly(stamped_us)
+    seen_us = put(taken_us[:, None])[:, 0]
+    late_ms = (clock_us - seen_us)[: np.searchsorted(clock_us, stamped_us[4900])] / 1000
+    assert np.diff(clock_us).max() > 100_000 and np.ptp(np.diff(clock_us)[:4800]) <= 1
+    assert np.abs(late_ms - late_ms.mean()).max() < most_ms

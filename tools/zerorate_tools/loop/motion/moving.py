@@ -17,6 +17,7 @@ from ..read.gate import CannotClose
 from ..read.reference import Reference
 from ..read.still import runs, still_ticks
 from ..read.ticks import TICK_S, AnyPath, Ticks, read_ticks
+from .clock import GAP, evenly
 
 #: A device is in motion where its rates spread by this in a window.
 LEAST_DPS = 5.0
@@ -28,8 +29,6 @@ _RAIL = 32767
 W_LAST = [1, 2, 3, 0]
 #: Of a recording whose rates spread by less no window moves.
 _WORTH_READING_DPS = 1.0
-#: Times the usual between two samples from which on it is a gap, which no window spans.
-_GAP = 5
 #: Share of the samples that an attitude must be seen at: below it gravity shows more.
 _LEAST_SEEN = 0.5
 #: Seconds over which gravity is held in one place by about the right bias, and samples asked.
@@ -67,7 +66,7 @@ class Moving:
         """Seconds between samples, gaps left out; a mean, as stamps are whole microseconds and a
         sample that is lost now and then is time all the same."""
         apart_s = np.diff(self.at_s)
-        return float(apart_s[apart_s <= _GAP * np.median(apart_s)].mean())
+        return float(apart_s[apart_s <= GAP * np.median(apart_s)].mean())
 
     @property
     def planar(self) -> bool:
@@ -111,7 +110,7 @@ class Moving:
     def whole(self, s: slice) -> bool:
         """Whether samples are without gap or rail."""
         apart_s = self.at_s[s][-1] - self.at_s[s][0] - (s.stop - s.start - 1) * self.dt_s
-        return bool(abs(apart_s) < _GAP * self.dt_s and self.usable[s].all())
+        return bool(abs(apart_s) < GAP * self.dt_s and self.usable[s].all())
 
 
 def _beside_main(vectors: np.ndarray) -> float:
@@ -166,12 +165,14 @@ def moving_of(path: AnyPath, ticks: Ticks | None = None) -> Moving | None:
     rate = gyro * np.radians(1.0) / opened.scales.gyro_lsb_per_dps
     if len(t_us) < 16 or np.degrees(rate.std(axis=0).max()) < _WORTH_READING_DPS:
         return None
+    clipped = (np.abs(np.hstack([gyro, accel])) >= _RAIL).any(axis=1) | saturated(gyro)
+    t_us, put = evenly(t_us)
+    rate, accel, usable = put(rate), put(accel), put(1.0 * clipped[:, None])[:, 0] == 0.0
     ticks = ticks or read_ticks(path, TICK_S)
     still = still_ticks(ticks)
     rests = _rests(ticks, still)
     offset = np.median(rests[:, 1:], axis=0) if len(rests) else _offset(rate, accel, t_us)
     middle_us = 0.5 * (t_us[0] + t_us[-1])
-    usable = (np.abs(np.hstack([gyro, accel])) < _RAIL).all(axis=1) & ~saturated(gyro)
     rests[:, 0] += (ticks.start_us - middle_us) * 1e-6
     rests[:, 1:] -= offset
     tick = ((t_us - ticks.start_us) / (ticks.tick_s * 1e6)).astype(np.int64)
@@ -179,6 +180,7 @@ def moving_of(path: AnyPath, ticks: Ticks | None = None) -> Moving | None:
         *(opened.name, rate - offset, accel / (lsb_per_g or 1.0), (t_us - middle_us) * 1e-6),
         *(usable, still[np.clip(tick, 0, len(still) - 1)], offset, rests),
     )
+    given = put(given)
     if reference.rates:
         given = _attitude_by(given, moving.dt_s)
     seen = np.isfinite(given).all(axis=1).mean() if reference.names else 0.0
