@@ -62,11 +62,13 @@ def _steps(moving):
     seen, added = columns.of(np.arange(150, 300))
     found = {"moving": moving.__dict__, "columns": columns.__dict__, "rows": rows.__dict__}
     found["of"] = {"seen": seen, "added": added, "spans": [s.start for s in moving.spans(10.0)]}
-    found["fitted"] = {n: getattr(fitted, n) for n in ("own", "precision", "folds", "heading")}
+    names = ("own", "precision", "noise", "likely", "folds", "heading", "doubt")
+    found["fitted"] = {n: getattr(fitted, n) for n in names}
     shown, without = fitted.shown(_MATRIX / 2), fitted.without(_MATRIX / 2, 1)
     found["shown"] = {"normal": shown.normal, "right": shown.right, "without": without.normal}
     for name, fold in (("tilts", 2), ("every tilt", None)):
-        found["shown"][name] = fitted.tilts(_MATRIX / 2, 0.1 * own[:9], fold)
+        found["shown"][name] = fitted.tilts(0.1 * own[:9] - _MATRIX.ravel() / 2, fold)
+    found["shown"]["nats"] = fitted.nats(0.1 * own[:9], 2)
     found["is"] = {"dt_s": moving.dt_s, "planar": moving.planar, "apart": distance(shown, without)}
     return found, fitted
 

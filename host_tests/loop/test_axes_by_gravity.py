@@ -126,7 +126,8 @@ def test_how_a_body_is_mounted_is_told_from_how_the_axes_are_turned(tmp_path, mo
 
 def test_a_matrix_of_one_half_that_makes_the_heading_of_the_other_worse_is_not_deployed(tmp_path):
     halves = [
-        handled(s, np.eye(3) * scale, minutes=2.0, seen=True) for s, scale in ((1, 0.01), (51, 0.0))
+        handled(s, np.eye(3) * scale, minutes=2.0, seen=True)
+        for s, scale in ((1, 0.01), (51, 0.003))
     ]
     columns = {n: np.concatenate([h.columns[n] for h in halves]) for n in halves[0].columns}
     columns["t_us"] = np.arange(len(columns["t_us"]), dtype=np.int64) * int(1e6 / _HZ)
@@ -216,8 +217,8 @@ def test_a_few_bouts_of_a_hand_that_pushes_as_it_turns_show_no_matrix(tmp_path):
 
 
 def test_a_loud_recording_that_hides_tilts_does_not_outweigh_a_quiet_one_when_judged():
-    quiet, loud = np.array([[2.0, 100.0]]), np.array([[300.0, 0.001]])
-    assert _tilt([quiet, loud]) == pytest.approx(2.2, abs=0.1)
+    quiet, loud = np.array([[[2.0, 100.0]]] * 2), np.array([[[300.0, 0.001]]] * 2)
+    assert _tilt([quiet, loud]) == pytest.approx((2.2, 2.2), abs=0.1)
 
 
 def test_one_turn_between_two_rests_is_told_by_gravity_before_and_after_it(recorded):

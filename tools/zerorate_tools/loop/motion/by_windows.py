@@ -1,7 +1,8 @@
 """What recordings in motion show of the nine entries, and whether it holds on windows held out."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import compress
 
 import numpy as np
 from scipy.stats import chi2
@@ -9,7 +10,7 @@ from scipy.stats import chi2
 from .columns import MATRIX
 from .device import LEVEL, Shown, check_one_device, device_of, groups
 from .heading import heading_lost
-from .matrix import FOLDS, Fitted, beside, by_recording, fit, of_what_shows_more
+from .matrix import FOLDS, Fitted, again, beside, by_recording, fit, of_what_shows_more
 from .moving import Moving, check_axes
 
 
@@ -94,8 +95,26 @@ _DECIMALS = 12
 #: Of the whole matrix: a part that is smaller is not named.
 _TRIFLE = 0.1
 
-#: A recording, the fold of it that is judged, None for all, and entries (9,) by others.
-_Judged = tuple[Fitted, int | None, np.ndarray]
+
+@dataclass(frozen=True)
+class _Judged:
+    """A recording, its rates integrated without a matrix and beside the one that is deployed, as
+    what turns a frame by much is not linear in the entries; step: (9,) by which entries of others
+    differ from those deployed; fold: the part that is judged, None for all."""
+
+    bare: Fitted
+    beside: Fitted
+    step: np.ndarray
+    fold: int | None
+
+    def gain(self) -> float:
+        """Nats by which the entries are likelier than none."""
+        return self.beside.nats(self.step, self.fold) - self.bare.nats(0.0 * self.step, self.fold)
+
+    def tilts(self) -> np.ndarray:
+        """(2, w, 2) tilts of windows and what they are worth, without entries and with them."""
+        bare = self.bare.tilts(0.0 * self.step, self.fold)
+        return np.array([bare, self.beside.tilts(self.step, self.fold)])
 
 
 def by_windows(train: list[Moving], holdout: list[Moving]) -> RateScale | None:
@@ -171,21 +190,20 @@ def _by_windows(train: list[Moving], holdout: list[Moving]) -> RateScale | None:
     # small sizes are the better guess; how far off it is, is not said as if they were known
     wide = device_of(list(statements.values()), large=True)
     deviation = np.sqrt(np.diag(wide.covariance) + (wide.entries - entries) ** 2)
+    deployed = kept @ entries
     ways = [way for m in holdout for way in m.measured]
-    held = [f for f in (beside(m, matrix) for m in ways) if f is not None]
-    left_out = list(_folds(fitted, matrix, kept))
-    judged: list[_Judged] = [(f, None, kept @ entries) for f in held] or left_out
+    held = [(f, 0.0 * matrix) for f in (beside(m, 0.0 * matrix) for m in ways) if f is not None]
+    held_out = [_Judged(*_either(*one, deployed), 0.0 * deployed, None) for one in held]
+    left_out = list(_folds(fitted, matrix, kept, deployed))
+    judged = held_out or left_out
     if not judged:
         return None
-    gain, predicted = (_gain(some, matrix) for some in (judged, left_out))
+    gain, predicted = (sum(j.gain() for j in some) for some in (judged, left_out))
     given = {f.moving.name for f in fitted if f.moving.given is not None}
     reference = GIVEN if given >= statements.keys() else GRAVITY
     by_it = [f for f in fitted if (f.moving.given is not None) == (reference == GIVEN)]
-    told = [j for j in judged if (j[0].moving.given is not None) == (reference == GIVEN)]
-    before, after = (
-        _tilt([f.tilts(matrix, x, k) for f, k, m in told for x in [0.0 * m if bare else m]])
-        for bare in (True, False)
-    )
+    told = [j for j in judged if (j.bare.moving.given is not None) == (reference == GIVEN)]
+    before, after = _tilt([j.tilts() for j in told])
     fastest = np.degrees(np.max([np.abs(f.moving.rate).max(axis=0) for f in fitted], axis=0))
     sigma = np.sqrt(np.diag(np.linalg.pinv(shown.normal + _FAINT)))
     unseen = sigma > np.maximum(UNSEEN, _CLEAR * np.abs(entries))
@@ -196,7 +214,7 @@ def _by_windows(train: list[Moving], holdout: list[Moving]) -> RateScale | None:
         # takes the noise for even, which a few bouts of a hand are not: parts left out must agree.
         p_value=float(np.exp(-max(min(device.nats, predicted), 0.0))),
         level=0.0 if all(f.moving.planar and f.moving.given is None for f in fitted) else _LEVEL,
-        deployed=np.round(kept @ entries, _DECIMALS).reshape(3, 3) + 0.0,  # no -0.0
+        deployed=np.round(deployed, _DECIMALS).reshape(3, 3) + 0.0,  # no -0.0
         kind=_kind(entries, covariance),
         reference=reference,
         gains=np.array([gain, _NO_WORSE[reference] * before - after]),
@@ -214,24 +232,30 @@ def _by_windows(train: list[Moving], holdout: list[Moving]) -> RateScale | None:
 _FAINT = np.eye(MATRIX) * 1e-2
 
 
-def _folds(fitted: list[Fitted], matrix: np.ndarray, kept: np.ndarray) -> Iterator[_Judged]:
+def _either(f: Fitted, matrix: np.ndarray, entries: np.ndarray) -> tuple[Fitted, Fitted]:
+    """A recording fitted beside a matrix, beside none and beside entries (9,)."""
+    return again(f, matrix, 0.0 * matrix), again(f, matrix, entries.reshape(3, 3))
+
+
+def _folds(
+    fitted: list[Fitted], matrix: np.ndarray, kept: np.ndarray, deployed: np.ndarray
+) -> Iterator[_Judged]:
     """Each recording's part held out, with the entries that all other parts show."""
+    either = [_either(f, matrix, deployed) for f in fitted]
     for k in range(FOLDS):
-        left = [f for f in fitted if (f.folds == k).any() and (f.folds != k).any()]
-        if left:
+        left = [(f.folds == k).any() and (f.folds != k).any() for f in fitted]
+        if any(left):
             said = by_recording((f, f.without(matrix, k)) for f in fitted)
-            entries = device_of(list(said.values())).entries
-            yield from ((f, k, kept @ entries) for f in left)
+            step = kept @ device_of(list(said.values())).entries - deployed
+            yield from (_Judged(*e, step, k) for e in compress(either, left))
 
 
-def _gain(judged: Iterable[_Judged], matrix: np.ndarray) -> float:
-    """Nats by which entries are likelier than none in parts that they were not fitted to."""
-    return float(sum(f.shown(matrix, k).gain(m) for f, k, m in judged))
-
-
-def _tilt(parts: Sequence[np.ndarray]) -> float:
-    tilt, worth = np.concatenate([np.zeros((0, 2)), *parts]).T
-    return float(np.sqrt(worth @ tilt**2 / worth.sum())) if worth.any() else float("nan")
+def _tilt(parts: Sequence[np.ndarray]) -> tuple[float, float]:
+    """RMS of what turns windows without entries and with them. parts: as `_Judged.tilts`."""
+    tilt, worth = np.moveaxis(np.concatenate([np.zeros((2, 0, 2)), *parts], axis=1), 2, 0)
+    worth = worth.sum(axis=0)
+    before, after = np.sqrt(tilt**2 @ worth / worth.sum()) if worth.any() else (np.nan, np.nan)
+    return float(before), float(after)
 
 
 def _kind(entries: np.ndarray, covariance: np.ndarray) -> str:

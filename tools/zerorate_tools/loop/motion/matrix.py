@@ -6,12 +6,12 @@ The noise is the hand's acceleration: its spectrum comes from the residuals of e
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.ndimage import uniform_filter1d
 
-from .columns import BIAS, DRIFT, LONGEST_S, MATRIX, MOUNTING, OWN, OWN_SIGMA
+from .columns import ACCEL_BIAS, BIAS, DRIFT, LONGEST_S, MATRIX, MOUNTING, OWN, OWN_SIGMA
 from .device import SIZES, Shown, device_of, distance, groups
 from .moving import REST_SIGMA, Moving
 from .windows import LEAST_WINDOWS, Rows, rows_of
@@ -27,26 +27,30 @@ FREEDOM, ROUNDS = 4.0, 6
 #: A turn of the axes turns the frame that headings are told in, once: no heading is lost by it.
 _NO_TURN = np.eye(MATRIX) - groups()[-1]
 #: Of its own errors those before a delay and a lever arm, which are small, are taken out.
-TAKEN_OUT = MOUNTING.stop
-_OWN_PRECISION = np.concatenate([np.full(n, OWN_SIGMA[name] ** -2) for name, n in OWN.items()])
+_TAKEN_OUT = np.arange(sum(OWN.values())) < MOUNTING.stop
+_WIDTH = np.concatenate([np.full(n, OWN_SIGMA[name]) for name, n in OWN.items()])
 
 
 @dataclass
 class Fitted:
-    """A recording beside a matrix: its own errors, rows of its windows, precision (w, q, 3) of
-    them, folds (w,) of a window, and heading (9, 9), its mean square by entries.
+    """A recording beside a matrix: its own errors, their precision before (p,), rows of its
+    windows, precision (w, q, 3) and noise (q, 3) of them, folds (w,) of a window, heading (9, 9),
+    its mean square by entries, and doubt, by how much parts of it contradict each other.
     """
 
     moving: Moving
     own: np.ndarray
+    likely: np.ndarray
     rows: Rows
     precision: np.ndarray
     folds: np.ndarray
     heading: np.ndarray
+    noise: np.ndarray = field(default_factory=lambda: np.ones(1))
+    doubt: float = 1.0
 
     def shown(self, matrix: np.ndarray, fold: int | None = None) -> Shown:
         """What its windows say, or those of one fold, linear about the matrix."""
-        return self._of(matrix, self.folds >= 0 if fold is None else self.folds == fold)
+        return self._of(matrix, self.of(fold))
 
     def without(self, matrix: np.ndarray, fold: int) -> Shown:
         """What its windows say without a fold, nor those that lie next to it and share its data."""
@@ -64,8 +68,8 @@ class Fitted:
             flat.T @ self.rows.errors[take].ravel(),
         )
         at = np.arange(MATRIX, len(right))
-        normal[at, at] += _OWN_PRECISION
-        right[MATRIX:] -= _OWN_PRECISION * self.own
+        normal[at, at] += self.likely
+        right[MATRIX:] -= self.likely * self.own
         for at_s, *rate in self.moving.rests:
             design = np.zeros((3, len(self.own)))
             design[:, BIAS], design[:, DRIFT] = np.eye(3), at_s * np.eye(3)
@@ -81,7 +85,7 @@ class Fitted:
 
     def move(self, step: np.ndarray) -> None:
         """Move its own errors to where they are likeliest beside a matrix moved by (3, 3)."""
-        self.own[:TAKEN_OUT] += self.own_beside(step.ravel())[:TAKEN_OUT]
+        self.own += _TAKEN_OUT * self.own_beside(step.ravel())
 
     def _of(self, matrix: np.ndarray, take: np.ndarray) -> Shown:
         normal, right = self.normal(take)
@@ -90,14 +94,31 @@ class Fitted:
         right = right[:MATRIX] - back @ np.linalg.solve(own, right[MATRIX:])
         return Shown(bare, right + bare @ matrix.ravel())
 
-    def tilts(self, matrix: np.ndarray, entries: np.ndarray, fold: int | None) -> np.ndarray:
-        """(w, 2) degrees a minute by which each window's frame tilts against gravity, with entries
-        (9,) in the place of the matrix, and what that is worth: a hand that pushes hides a tilt.
-        What the recording has of its own is fitted anew."""
-        step = entries - matrix.ravel()
+    def left(self, step: np.ndarray) -> np.ndarray:
+        """(w, q, 3) what is left of rows beside entries that are a step (9,) from the matrix; what
+        the recording has of its own is fitted anew."""
+        return self.rows.errors - self.rows.columns @ np.r_[step, self.own_beside(step)]
+
+    def nats(self, step: np.ndarray, fold: int | None) -> float:
+        """Log-likelihood of a fold of the level rows, or of all, beside entries a step (9,) off,
+        less sure by as much as its parts contradict each other."""
         rows = self.rows
-        left = rows.errors - rows.columns @ np.r_[step, self.own_beside(step)]
-        take = self.folds >= 0 if fold is None else self.folds == fold
+        axes = 2 if self.moving.given is None else 3
+        counts = rows.counts * rows.there
+        square = (counts[..., None] * self.left(step) ** 2 / self.noise)[..., :axes].sum(axis=2)
+        number = axes * counts @ rows.bands.T
+        loud = (FREEDOM + number) * np.log1p(square @ rows.bands.T / FREEDOM)
+        quiet = counts @ np.log(self.noise[:, :axes]).sum(axis=1)
+        return float(-0.5 * (loud.sum(axis=1) + quiet)[self.of(fold)].sum() / self.doubt)
+
+    def of(self, fold: int | None) -> np.ndarray:
+        """(w,) whether a window is of a fold, or of any."""
+        return self.folds >= 0 if fold is None else self.folds == fold
+
+    def tilts(self, step: np.ndarray, fold: int | None) -> np.ndarray:
+        """(w, 2) degrees a minute by which each window's frame tilts against gravity beside entries
+        a step (9,) off, and what that is worth: a hand that pushes hides a tilt."""
+        rows, left, take = self.rows, self.left(step), self.of(fold)
         slow = rows.tilting * self.precision[..., None]
         square = np.einsum("wqac,wqad->wcd", slow, rows.tilting)[take]
         score = np.einsum("wqac,wqa->wc", slow, left)[take]
@@ -153,6 +174,14 @@ def beside(moving: Moving, matrix: np.ndarray) -> Fitted | None:
     return fitted
 
 
+def again(f: Fitted, matrix: np.ndarray, other: np.ndarray) -> Fitted:
+    """A recording that was fitted beside a matrix, integrated anew beside another."""
+    own = f.own + _TAKEN_OUT * f.own_beside((other - matrix).ravel())
+    fitted = _beside(f.moving, _SECONDS[-1], other, replace(f, own=own))
+    assert fitted is not None, "it was fitted before"
+    return fitted
+
+
 def of_what_shows_more(moving: Moving) -> Moving:
     """The recording, without its attitude where gravity shows more of the matrix: an attitude with
     jumps or drift, or one that is hardly seen."""
@@ -185,9 +214,10 @@ def _beside(
     folds = np.arange(windows) * blocks // windows % FOLDS
     fixed = moving.given is not None and not moving.mounted
     heading = rows.heading if fixed else _NO_TURN @ rows.heading @ _NO_TURN
-    fitted = Fitted(moving, own, rows, np.ones(rows.errors.shape), folds, heading)
+    fitted = Fitted(moving, own, _WIDTH**-2.0, rows, np.ones(rows.errors.shape), folds, heading)
     _weigh(fitted, matrix)
-    fitted.precision = fitted.precision / _contradiction(fitted, matrix)
+    fitted.doubt = _contradiction(fitted, matrix)
+    fitted.precision = fitted.precision / fitted.doubt
     return fitted
 
 
@@ -199,29 +229,48 @@ def _contradiction(f: Fitted, matrix: np.ndarray) -> float:
 
 
 def _weigh(f: Fitted, matrix: np.ndarray) -> None:
-    """Set the precision of rows. A hand is now quiet and now loud: beside the noise of each
-    frequency each window and band has a loudness of its own (Student's t, by expectation and
-    maximisation: Lange, Little and Taylor 1989)."""
+    """Set the precision of rows and of its own errors. A hand is now quiet and now loud: beside the
+    noise of each frequency each window and band has a loudness of its own (Student's t, by
+    expectation and maximisation: Lange, Little and Taylor 1989)."""
     rows, weight = f.rows, np.ones(f.rows.errors.shape)
     number = 2.0 * (rows.counts * rows.there) @ rows.bands.T
     for _ in range(ROUNDS):
-        left, taken = _left(f, matrix)
+        left, taken, own = _left(f, matrix)
         free = rows.there[..., None] - np.minimum(taken * f.precision, 1.0)
-        noise = _variances(rows, weight * left, free)[rows.kinds]
+        f.noise = noise = _variances(rows, weight * left, free)[rows.kinds]
         level = (rows.counts[:, None] * (left + taken) / noise)[..., :2].sum(axis=2)
         quiet = (FREEDOM + number) / (FREEDOM + level @ rows.bands.T)
         weight = (quiet @ rows.bands)[..., None]
         f.precision = weight / noise
+        f.likely = _likely(own)
 
 
-def _left(f: Fitted, matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(w, q, 3) squares of what is left of rows, and the variance of what the fit took there."""
+def _likely(own: np.ndarray) -> np.ndarray:
+    """(p,) precision of a recording's own errors before, given their mean squares (p,). A force
+    that it carries along, as a drone its thrust, is no different from an accelerometer's bias, and
+    may be any: their size has a loudness of its own, too."""
+    precision = _WIDTH**-2.0
+    number = ACCEL_BIAS.stop - ACCEL_BIAS.start
+    level = (own * precision)[ACCEL_BIAS].sum()
+    precision[ACCEL_BIAS] *= (FREEDOM + number) / (FREEDOM + level)
+    return precision
+
+
+def _left(f: Fitted, matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(w, q, 3) squares of what is left of rows, the variance of what the fit took there, and mean
+    squares (p,) of its own errors. Pushes up and down go with strides, and an accelerometer's
+    errors fit them: all that waves show of the vertical is left."""
     normal, right = f.normal(slice(None))
     normal[:MATRIX, :MATRIX] += np.eye(MATRIX) * SIZES[-1] ** -2
     right[:MATRIX] -= matrix.ravel() * SIZES[-1] ** -2
     inverse, columns = np.linalg.inv(normal), f.rows.columns
-    left = (f.rows.errors - columns @ (inverse @ right)) ** 2
-    return left, np.einsum("wqap,pr,wqar->wqa", columns, inverse, columns, optimize=True)
+    step = inverse @ right
+    left = (f.rows.errors - columns @ step) ** 2
+    if f.moving.given is None:
+        upright = f.rows.errors + columns[..., MATRIX:] @ f.own
+        left[:, :-1, 2] = upright[:, :-1, 2] ** 2
+    taken = np.einsum("wqap,pr,wqar->wqa", columns, inverse, columns, optimize=True)
+    return left, taken, (f.own + step[MATRIX:]) ** 2 + np.diag(inverse)[MATRIX:]
 
 
 def _variances(rows: Rows, left: np.ndarray, free: np.ndarray) -> np.ndarray:
