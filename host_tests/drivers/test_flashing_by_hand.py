@@ -93,7 +93,9 @@ def test_a_file_of_any_size_arrives_byte_by_byte(flashed, size):
     assert (again.sent, again.sent_bytes) == ([], 0)
     more, _ = flashed(extra={MAIN: data + b"x"})
     assert (more.sent, more.sent_bytes) == ([MAIN], size + 1)
-    assert Path(MAIN).read_bytes() == data + b"x" and there() == more.files
+    assert Path(MAIN).read_bytes() == data + b"x"
+    flashed(extra={MAIN: b"another"})  # the first one was the user's own
+    assert Path("main.old.py").read_bytes() == data and len(there()) == len(more.files) + 1
 
 
 def test_a_dry_run_writes_nothing_and_counts_what_would_be_there(flashed, monkeypatch, tmp_path):

@@ -72,7 +72,10 @@ def connected(port: str, go_on: bool = True) -> Iterator[SerialTransport]:
     except TransportExecError as error:
         raise BoardError(f"{port}: {said(error.error_output)}") from error
     except TransportError as error:
-        raise BoardError(f"{port}: {error}; is MicroPython on this board?") from error
+        raise BoardError(
+            f"{port}: {error}; is MicroPython on this board, and does "
+            "its program end at Ctrl-C (no bare `except:`)?"
+        ) from error
     finally:
         if go_on:
             _let_run(transport.serial)

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 _LIBRARY = "lib"
 _STAGE = "zerorate.new"
+_PROGRAM, _PROGRAM_BEFORE = PurePosixPath("main.py"), "main.old.py"
 _CHUNK = 1536  # bytes of a file, and characters, in a command: little for a board of 16 KB
 _COMMAND = 2300
 _TRIAL = """
@@ -84,7 +85,7 @@ def _own_files(main: Path | None, model: Path | None) -> dict[PurePosixPath, byt
 
         found[PurePosixPath("model.bin")] = encoded(read_model(model))
     if main is not None:
-        found[PurePosixPath("main.py")] = bytes_of(main, "name a program")
+        found[_PROGRAM] = bytes_of(main, "name a program")
     return found
 
 
@@ -137,7 +138,8 @@ def room(facts: BoardFacts, parts: Iterable[str], total: int) -> list[str]:
     has = f"; it has {facts.heap_free:,} free" if facts.heap_free else ""
     lines = [f"heap needed: {needed:,} bytes{has}"]
     if facts.disk_free:
-        lines.append(f"flash needed: {total:,} bytes; it has {facts.disk_free:,} free")
+        # a full littlefs counts below zero
+        lines.append(f"flash needed: {total:,} bytes; it has {max(0, facts.disk_free):,} free")
     if facts.heap_free and facts.heap_free < needed:
         lines.append(
             "that is more heap than this board has: freeze the packages, or leave out a part"
@@ -238,11 +240,19 @@ class Installer:
         if self._there(str(name)) == {str(name): _mark(data)}:
             self._tell(name, data, "the same already")
             return
+        if name == _PROGRAM:
+            self._keep_own()
         new = f"{name}.new"
         self._send(new, data)
         self._check({new: data}, new)
         self._do(f"replace({new!r}, {str(name)!r})")
         self._sent(name, data, flashed)
+
+    def _keep_own(self) -> None:
+        """Copy the program that is there before the first one that is sent: nobody may have it."""
+        if self._there(str(_PROGRAM)) and not self._there(_PROGRAM_BEFORE):
+            self._do(f"copy({str(_PROGRAM)!r}, {_PROGRAM_BEFORE!r})")
+            self._say(f"         the {_PROGRAM} that was there is kept as {_PROGRAM_BEFORE}")
 
     def _sent(self, name: PurePosixPath, data: bytes, flashed: Flashed) -> None:
         flashed.sent.append(name)

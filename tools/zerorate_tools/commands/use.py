@@ -155,7 +155,7 @@ def run_export(arguments: argparse.Namespace) -> None:
         default=[],
     ),
     switch("--only", "remove parts that are not named now"),
-    option("--main FILE", "copy FILE to main.py", Path),
+    option("--main FILE", "copy FILE to main.py; the one that is there becomes main.old.py", Path),
     option("--model FILE", "copy FILE to model.bin, and send the part that loads it", Path),
     description="Ask the board what it is, compile zerorate and zerorate_i2c for it, and put them "
     "into its lib folder, all or none. Files that the board has already are not sent.",
