@@ -12,7 +12,7 @@ from zerorate_tools.loop.search.decide import Decision
 from zerorate_tools.loop.search.examine import Examiner
 from zerorate_tools.loop.search.select import Search
 from zerorate_tools.loop.search.selection import Found
-from zerorate_tools.model.term import Term
+from zerorate_tools.model.term import Term, evaluate
 
 from . import dense
 from .dense import A, B, C, D
@@ -100,6 +100,30 @@ def test_acceleration_adds_no_more_than_a_gyroscope_follows_it_by(reach_g, found
     )
     told = Examiner(testing, None)._by_likelihood(pose, [])
     assert alone > 300 and told.accepted is found and (told.ratio > 0.6 * alone) == found
+
+
+@pytest.mark.parametrize(
+    ("step_degc", "across", "term", "explained"),
+    [
+        (1.0, 0.0, Term("temp", memory="play", width=2.0), True),
+        (0.0, 0.0, Term("temp", memory="play", width=2.0), False),
+        (0.1, 0.0, Term("temp", memory="play", width=2.0), False),
+        (1.0, 0.02, Term("temp", memory="play", width=2.0), False),
+        (1.0, 0.0, Term("b"), False),
+    ],
+)
+def test_what_moves_along_the_slope_alone_may_be_a_coarse_thermometer_s(
+    step_degc, across, term, explained
+):
+    line, degc = Term("temp", centre=1.0), 5.0 * np.sin(np.arange(120) / 9.0)
+    session = dense.white(6, 120, temp=degc)
+    session.temp_step_degc = step_degc
+    slope = np.array([0.02, -0.03, 0.01])
+    moved = 0.5 * evaluate(term, session.source, 20.0)[:, None] + degc[:, None]
+    session.rate_dps = 1e-3 * session.rate_dps + moved * slope + (moved - degc[:, None]) * across
+    regression = Regression([session])
+    told = examine.is_rounding(regression, [line], Candidate("", (term,), "catalogue"), 1.0)
+    assert told is explained
 
 
 def test_forms_of_a_hysteresis_have_one_to_four_operators_without_and_with_squares(monkeypatch):

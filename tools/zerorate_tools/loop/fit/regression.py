@@ -3,7 +3,7 @@ turned; and their noise, with the floor below which it lets no correction go.
 """
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 
 import numpy as np
@@ -83,12 +83,16 @@ class Regression:
         self.prepare()
 
     @contextmanager
-    def in_sensor_axes(self) -> Iterator[None]:
-        """Look along the sensor's own axes inside a `with`, and back."""
-        axes = self.axes
-        self.turn(np.eye(3))
-        yield
+    def along(self, axes: np.ndarray) -> Iterator[None]:
+        """Look along (3, 3) axes inside a `with`, and back."""
+        before = self.axes
         self.turn(axes)
+        yield
+        self.turn(before)
+
+    def in_sensor_axes(self) -> AbstractContextManager[None]:
+        """Look along the sensor's own axes inside a `with`, and back."""
+        return self.along(np.eye(3))
 
     @contextmanager
     def shrinking(self, precision: Mapping[Term, float]) -> Iterator[None]:

@@ -4,16 +4,17 @@ from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 import numpy as np
+from scipy.linalg import null_space
 
-from ...model.term import Terms
+from ...model.term import Term, Terms
 from ..fit.common_cause import RARE
 from ..fit.line import less_slope, ordinary
-from ..fit.regression import predicted
+from ..fit.regression import Regression, predicted
 from ..fit.single import PiecesByLine
 from ..read.sessions import Session
 from . import drift_test
 from .catalogue import Candidate
-from .decide import Decision, decide
+from .decide import LEVEL, Decision, decide, family_p
 from .hysteresis import KIND, is_like_hysteresis, may_show
 from .multiple_testing import MultipleTesting
 from .refine import drawn, refined
@@ -73,8 +74,13 @@ class Examiner:
         r, tried = self.regression, self.testing.tried(best)
         ratio = float(r.gains(nuisances, [best.terms]).sum())
         if self.testing.is_by_time(best):
-            return drift_test.considered(r, nuisances, best, ratio, tried)
-        return decide(r, nuisances, best, ratio, tried, self.singles)
+            decision = drift_test.considered(r, nuisances, best, ratio, tried)
+        else:
+            decision = decide(r, nuisances, best, ratio, tried, self.singles)
+        if decision.accepted and is_rounding(r, nuisances, best, tried):
+            reason = "the thermometer's coarse readings explain as much"
+            return replace(decision, accepted=False, reason=reason)
+        return decision
 
     def _by_pieces(
         self,
@@ -95,6 +101,37 @@ class Examiner:
         if reason:
             return replace(decision, accepted=False, reason=reason)
         return decision.on_pieces(judged, *beside, best.terms)
+
+
+def is_rounding(r: Regression, nuisances: Terms, candidate: Candidate, tried: float) -> bool:
+    """Whether an effect of temperature or time may be what a coarse thermometer makes of the slope:
+    temperatures that are off by one reading at most explain it on the axis that the slope moves,
+    and nothing is left on the others.
+
+    Readings that are off flatten a slope, and what has the course of temperature takes the rest.
+    """
+    terms = candidate.terms
+    line = [t for t in nuisances[:1] if t == Term("temp", centre=t.centre)]
+    steps = [s.temp_step_degc for s in r.sessions]
+    if not any(steps) or not line or {*candidate.sources} - {"temp", "time"}:
+        return False
+    with r.in_sensor_axes():
+        fitted = r.fit([*nuisances, *terms]).coefficients
+    own = np.vstack([fitted[:1], fitted[len(nuisances) :]])
+    added, degc = (
+        np.vstack([s.less_offsets(of(s), s.available)[s.available] for s in r.sessions])
+        for of in (
+            lambda s: predicted([*line, *terms], own, s),
+            lambda s: s.block_mean(s.source("temp"))[:, None],
+        )
+    )
+    slope = (degc.T @ added / (degc.T @ degc))[0]
+    off_degc = (added - degc * slope) @ slope / (slope @ slope)
+    if np.abs(off_degc).max() > max(steps):
+        return False
+    with r.along(np.vstack([slope, null_space(slope[None]).T])):
+        ratio = float(r.gains(nuisances, [terms])[0, 1:].sum())
+    return family_p(ratio, 2 * len(terms), tried) > LEVEL[candidate.family]
 
 
 def cancels(sessions: Sequence[Session], beside: Terms, terms: Terms) -> bool:
