@@ -257,3 +257,17 @@ def test_a_whole_device_is_measured_and_written(switching, tmp_path):
     assert other.holdout == ["d"] and set(other.sessions["d"].residual) == ways
     assert other.residuals("before")[0] == pytest.approx(whole.residuals("before")[0], nan_ok=True)
     assert told.gate.notes == []
+
+
+def test_an_effect_that_no_part_can_deploy_is_left_out(switching, tmp_path, monkeypatch):
+    analysis, logs, _ = switching
+    measure = run_kernels.run_kernels
+
+    def refuse(of, *more):
+        if of.selection.found:
+            raise run_kernels.CannotDeploy("too large")
+        return measure(of, *more)
+
+    monkeypatch.setattr(run_kernels, "run_kernels", refuse)
+    told, model = run_kernels.run_and_prune(analysis, logs, tmp_path / "corrected.parquet")
+    assert not model.slots and told.gate.notes == ["found but left out: too large"]

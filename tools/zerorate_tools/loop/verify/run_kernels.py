@@ -11,7 +11,7 @@ import numpy as np
 import pyarrow as pa
 from threadpoolctl import threadpool_limits
 
-from ...model import Model, Slot
+from ...model import CannotDeploy, Model, Slot
 from ...model.term import Terms, evaluate
 from ...recordings import Scales, open_recording
 from ...recordings.atomic import written_beside
@@ -34,7 +34,7 @@ from .courses import (
     SessionRuns,
     Sink,
 )
-from .firmware import Firmware
+from .firmware import Firmware, Refused
 from .judge import Judgement, rms_dps
 from .power_on import BlockMeans, PowerOn, ideal_dps
 from .prune_by_holdout import without_harmful, without_unshown
@@ -118,11 +118,19 @@ def run_and_prune(
     while True:
         analysis = deployable(analysis, scales)
         model = model_of(analysis, scales)
-        measured = run_kernels(analysis, logs, model, out, online, advance)
-        assert measured.measured is not None, "it was just measured"
-        less = _without_harmful(
-            analysis.selection, measured.measured, partial(_measured, analysis, logs, scales)
-        )
+        try:
+            measured = run_kernels(analysis, logs, model, out, online, advance)
+            assert measured.measured is not None, "it was just measured"
+            less = _without_harmful(
+                analysis.selection, measured.measured, partial(_measured, analysis, logs, scales)
+            )
+        except (CannotDeploy, Refused) as problem:  # fitted to a part, an effect may be too large
+            if not analysis.selection.found:
+                raise
+            analysis.gate.notes.append(f"found but left out: {problem}")
+            last = len(analysis.selection.found) - 1
+            analysis = with_selection(analysis, analysis.selection.without(last))
+            continue
         if less is analysis.selection:
             return measured, model
         analysis = with_selection(analysis, less)
