@@ -137,10 +137,16 @@ def test_channels_that_show_nothing_of_their_own_are_left_out():
     one, two = rng.normal(size=(2, 80))
     there = {"fan": one, "held": np.ones(80), "twice": 5 - 2 * one, "near": one + 0.1 * two}
     there |= {"other": two, "lost": np.full(80, np.nan)}
-    there |= {"acc_x": np.zeros(80), "acc_y": one, "rate_x": one + 1}
+    there |= {
+        "uptime": 7.0 - 3.0 * np.arange(80),
+        "acc_x": np.zeros(80),
+        "acc_y": one,
+        "rate_x": one + 1,
+    }
     sessions, report = [session(40, **there), session(40, **there, alone=two)], GateReport()
     usable_channels(sessions, report)
-    assert set(report.dropped) == {"held", "twice", "lost", "alone", "acc_y", "rate_x"}
+    gone = {"held", "twice", "lost", "uptime", "alone", "acc_y", "rate_x"}
+    assert set(report.dropped) == gone
     for s in sessions:
         assert list(s.sources) == ["fan", "near", "other", "acc_x"]
 
@@ -156,7 +162,7 @@ def test_a_channel_with_the_rates_own_noise_is_no_cause(noise, changes, kept):
     of.ticks_dps[10:20] = np.nan
     of.sources["fan"] = np.nan_to_num(-of.ticks_dps[:, 1]) + noise * rng.normal(size=80)
     of.sources["fan"][changes:] = 0.0
-    ramp = session(40, fan=np.arange(80.0))
+    ramp = session(40, fan=np.arange(80.0) ** 2)
     ramp.ticks_dps = of.ticks_dps
     usable_channels([of], GateReport())
     usable_channels([ramp], GateReport())

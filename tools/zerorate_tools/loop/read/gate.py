@@ -212,6 +212,9 @@ def _unusable(name: str, sessions: list[Session]) -> str | None:
         return "no values"
     if name not in ACCELERATIONS and not any(np.ptp(s.sources[name]) for s in sessions):
         return "constant"
+    own, time_s = [s.sources[name] for s in sessions], [s.time_s() for s in sessions]
+    if name not in OWN_SOURCES and _same_course(own, time_s):
+        return "a clock: it only counts the time"
     if name not in OWN_SOURCES and all(_has_the_noise(s, name) for s in sessions):
         return "it has the gyroscope's own noise: a copy of what is to be explained, no cause of it"
     return None
@@ -233,7 +236,11 @@ def _has_the_noise(session: Session, name: str) -> bool:
 def _copies(a: str, b: str, sessions: list[Session]) -> bool:
     if a.startswith(("acc_", "rate_")) and b.startswith(("acc_", "rate_")):
         return False
-    x = np.concatenate([s.sources[a] - s.sources[a].mean() for s in sessions])
-    y = np.concatenate([s.sources[b] - s.sources[b].mean() for s in sessions])
+    return _same_course([s.sources[a] for s in sessions], [s.sources[b] for s in sessions])
+
+
+def _same_course(a: list[np.ndarray], b: list[np.ndarray]) -> bool:
+    """Whether one is the other, scaled, in all sessions together, offsets aside."""
+    x, y = (np.concatenate([part - part.mean() for part in of]) for of in (a, b))
     scale = np.sqrt((x @ x) * (y @ y))
     return bool(abs(x @ y) > _COPY * scale)
