@@ -121,6 +121,9 @@ def test_heading_is_lost_about_the_vertical_or_the_worst_axis_where_nobody_knows
     rms = 60 * np.sqrt(np.mean(np.square(lost)))
     assert compared.heading_deg_per_min(FIRST_REST) == pytest.approx(rms)
     assert compared.verdict(FRESH, FIRST_REST).times == pytest.approx(rms / 1e-9)
+    errors = {FIRST_REST: np.full((2, 3), [0.9, 0.0, 0.0]), FRESH: np.full((2, 3), [0.0, 0.0, 0.1])}
+    better = "in deg/s better" if down else "9.0 times better"  # about the vertical it is worse
+    assert f"{better} than the mean" in replace(compared, error_dps=errors).headline()
 
 
 def test_what_the_logs_before_taught_counts_from_the_second_log_on(tmp_path):

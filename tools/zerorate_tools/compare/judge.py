@@ -174,14 +174,14 @@ class Compared:
     def headline(self) -> str:
         """The one sentence: how wrong the mean at boot, how wrong zerorate."""
         verdict = self.verdict(self.ours, FIRST_REST)
-        words = {
-            "better": f"{verdict.times:.1f} times better than the mean of the first rest",
-            "worse": f"{1 / verdict.times:.1f} times worse than the mean of the first rest",
-        }
+        times = verdict.times if verdict.word == "better" else 1 / verdict.times
+        how = f"{times:.1f} times {verdict.word}" if times > 1 else f"in deg/s {verdict.word}"
+        than = f"{how} than the mean of the first rest"
+        words = than if verdict.word in ("better", "worse") else verdict.word
         rests = f"{len(self.rests)} later rest" + ("s" if len(self.rests) > 1 else "")
         mine, theirs = map(self.heading_deg_per_min, (self.ours, FIRST_REST))
         return (
-            f"{self.ours}: {words.get(verdict.word, verdict.word)}. At {rests} it would have lost "
+            f"{self.ours}: {words}. At {rests} it would have lost "
             f"{mine:.2f} deg of heading a minute, and the mean {theirs:.2f}."
         )
 

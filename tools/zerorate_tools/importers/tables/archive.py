@@ -142,7 +142,7 @@ def _by_shared_time(tables: dict[str, Table], path: Path) -> Table:
     times = Counter(name for t in tables.values() for name in usual.time_columns(t.names))
     shared = [name for name, count in times.items() if count == len(tables)]
     if not shared:
-        do = "write them into one table first"
+        do = "write them into one table: if they have the same rows, paste -d, FILE FILE > BOTH.csv"
         raise BadRecording(path, f"the tables {', '.join(tables)} share no time", do=do)
     return _together(tables, shared)
 

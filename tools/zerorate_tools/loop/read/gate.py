@@ -128,7 +128,7 @@ def without_long_gaps(ticks: list[Ticks]) -> None:
             gap, whole = (n * t.tick_s / span_s for n in (longest, len(t.count)))
             raise CannotClose(
                 f"{t.name}: nothing for {gap:.1f} {unit} of its {whole:.1f} {unit}; "
-                "cut it there: what follows is a recording of its own"
+                "cut it there (zerorate cut): what follows is a recording of its own"
             )
 
 
