@@ -38,7 +38,8 @@ def open_text(path: Path, encoding: str = "utf-8") -> tuple[pa.NativeFile, Calla
     if packed is not None:
         stream = pa.CompressedInputStream(raw, packed)
     if encoding != "utf-8":
-        stream = pa.transcoding_input_stream(stream, encoding, "utf-8")
+        decoder = codecs.getincrementaldecoder(encoding)("replace")  # a line may be torn
+        stream = pa.TransformInputStream(stream, lambda block: decoder.decode(block).encode())
     return stream, raw.tell
 
 
