@@ -216,6 +216,8 @@ SIGNALS = [f" ({i / 100})  can0  174   [8]  00 0A :: IMU(YawRate: {z} deg/s, Rol
            f"PitchRate: {y} deg/s)" for i, (x, y, z) in enumerate(THREE.tolist())]  # fmt: skip
 TOPICS = [f'dev/{sensor} {{"ts": {10 * i}, "x": {x}, "y": {y}, "z": {z}}}'
           for i, (x, y, z) in enumerate(THREE.tolist()) for sensor in ("mag", "gyro")]  # fmt: skip
+TIMED = [f"2026-05-01 10:00:00.{i:02d}\n  gyro: {x}, {y}, {z}"
+         for i, (x, y, z) in enumerate(THREE)]  # fmt: skip
 MONITORED = [f"{{}}{i / 100:06.3f}{{}}{row}" for i, row in enumerate(lines(THREE).splitlines())]
 COUNTED, BY_NUMBER = Options(hz=100.0), "t_us=1:s gx=2:dps gy=3:dps gz=4:dps"
 
@@ -266,11 +268,12 @@ COUNTED, BY_NUMBER = Options(hz=100.0), "t_us=1:s gx=2:dps gy=3:dps gz=4:dps"
          "t_us=1:s gx=3:dps gy=4:dps gz=5:dps", None, 0),
         ([row.format("2026-05-01 10:00:", " ") for row in MONITORED], BY_NUMBER, None, 0),
         ([f"00> {row}" for row in ROWS], BY_NUMBER, None, 0),
+        (TIMED, "'gx=gyro x:dps' 'gy=gyro y:dps' 'gz=gyro z:dps'", None, 0),
     ],
     ids="comments commented-head no-head serial dicts unit yei lists tuples tag clock esp "
     "parted turns echoed long said labview influx shimmer split rows numbered movesense "
     "edge-impulse semicolons scaled named-unit unit-beside input-device settings cantools topics "
-    "zephyr esp-idf coolterm segger".split(),
+    "zephyr esp-idf coolterm segger clock-above".split(),
 )  # fmt: skip
 def test_text_of_people_is_read(tmp_path, text, mapping, options, lost):
     recording, report = read(tmp_path, "\n".join(text), "in.log", mapping, options=options)

@@ -86,7 +86,9 @@ class Reader:
             self._heading, self._indent = heading[2].decode("utf-8", "replace"), indent
         if line.startswith(_MARKS, indent) or _ITEM.match(line):
             return (), []
-        parts = _EACH.split(line.rstrip())
+        parts = _EACH.split(line.strip())
+        if len(parts) == 3 and not parts[0] + parts[2] and b":" in parts[1]:  # a clock alone
+            return ("time",), parts[1:2]
         return _named(self._heading, indent > self._indent, tuple(parts[::2])), parts[1::2]
 
 
