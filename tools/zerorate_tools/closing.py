@@ -210,7 +210,7 @@ def not_seen(shown: RateScale) -> list[str]:
 
 def advice(shown: RateScale) -> list[str]:
     """What to record next: turns that were missing, and rest."""
-    missing = [_AXES[j] for j in np.flatnonzero(np.diag(shown.unseen))]
+    missing = [_AXES[j] for j in np.flatnonzero(shown.unseen.any(axis=0))]
     turns = [f"hold {axis} level and turn the device about it, several times" for axis in missing]
     return [*turns, "leave the device untouched for two minutes to show what only rest shows"]
 

@@ -100,15 +100,12 @@ class Fitted:
         return self.rows.errors - self.rows.columns @ np.r_[step, self.own_beside(step)]
 
     def nats(self, step: np.ndarray, fold: int | None) -> float:
-        """Log-likelihood of a fold of the level rows, or of all, beside entries a step (9,) off,
-        less sure by as much as its parts contradict each other."""
-        rows = self.rows
-        axes = 2 if self.moving.given is None else 3
-        counts = rows.counts * rows.there
-        square = (counts[..., None] * self.left(step) ** 2 / self.noise)[..., :axes].sum(axis=2)
-        number = axes * counts @ rows.bands.T
-        loud = (FREEDOM + number) * np.log1p(square @ rows.bands.T / FREEDOM)
-        quiet = counts @ np.log(self.noise[:, :axes]).sum(axis=1)
+        """Log-likelihood of a fold, or of all, beside entries a step (9,) off, less sure by as much
+        as its parts contradict each other."""
+        rows, counts = self.rows, self.rows.counts * self.rows.there
+        square = (counts[..., None] * self.left(step) ** 2 / self.noise).sum(axis=2)
+        loud = (FREEDOM + 3.0 * counts @ rows.bands.T) * np.log1p(square @ rows.bands.T / FREEDOM)
+        quiet = counts @ np.log(self.noise).sum(axis=1)
         return float(-0.5 * (loud.sum(axis=1) + quiet)[self.of(fold)].sum() / self.doubt)
 
     def of(self, fold: int | None) -> np.ndarray:
