@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 const = int
 # layout: The corrector's state
 _ELAPSED_US = const(16)
-_RESTS = const(61)
-_SOURCE = const(80)
+_RESTS = const(62)
+_SOURCE = const(78)
 # layout: The last words before the axes
 _TURN_ON_OFFSET_Q8 = const(-3)
 # layout: An axis

@@ -12,11 +12,11 @@ if TYPE_CHECKING:
 # layout: names that a board's own compiler reads
 const = int
 # layout: The corrector's state
-_STILLNESS = const(50)
-_OUT_Q8 = const(62)
-_EFFECT_Q8 = const(68)
-_QUALITY_Q8 = const(77)
-_SOURCE = const(80)
+_STILLNESS = const(19)
+_OUT_Q8 = const(63)
+_QUALITY_Q8 = const(69)
+_EFFECT_Q8 = const(75)
+_SOURCE = const(78)
 # layout: The last words before the axes
 _TURN_ON_OFFSET_Q8 = const(-3)
 # layout: An axis

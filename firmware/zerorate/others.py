@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 # layout: names that a board's own compiler reads
 const = int
 # layout: The corrector's state
-_STILLNESS = const(50)
+_STILLNESS = const(19)
 # layout: The state of the source in motion
 _MOTION_BIAS_Q8 = const(68)
 _LATE_US = const(352)

@@ -7,7 +7,7 @@ from .ratio import Ratio
 # layout: names that a board's own compiler reads
 const = int
 # layout: The corrector's state
-_FIT_WEIGHTS = const(99)
+_FIT_WEIGHTS = const(103)
 # layout: The last words before the axes
 _TURN_ON_OFFSET_Q8 = const(-3)
 # layout: An axis

@@ -34,7 +34,8 @@ def answer(run, known):
     """CRC-32, four bytes, of what calls of `run` leave in arrays that begin as `known` says.
 
     known: how often, `what`, how many words of the third array are made anew for each call and how
-    many bits they have, then the arrays: number of words, index and value of those that are not 0.
+    many bits they have, then the arrays: number of words, index and value of those that are not 0,
+    first of those that fit 16 bits.
     """
     a = _array(known[4])
     b = _array(known[5])
@@ -57,9 +58,8 @@ def answer(run, known):
 
 
 def _array(known):
-    words, pairs = known
-    found = array("i", [0] * words)
-    pairs = array("i", pairs)
-    for i in range(0, len(pairs), 2):
-        found[pairs[i]] = pairs[i + 1]
+    found = array("i", [0] * known[0])
+    for pairs in array("h", known[1]), array("i", known[2]):
+        for i in range(0, len(pairs), 2):
+            found[pairs[i]] = pairs[i + 1]
     return found

@@ -40,7 +40,7 @@ class Unit:
         """Segments of stillness, each learned from; returns what of the effects was left, dps."""
         left = []
         for _ in range(hours_again):
-            state, frame = array("i", [0] * STATE.FIT_SUM_T), array("i", [0] * 7)
+            state, frame = array("i", [0] * STATE.FIT_WEIGHTS), array("i", [0] * 7)
             self.model.power_on()
             for n in range(0, len(self.raw["temp"]), SEGMENT):
                 left.append(self._segment(n, state, frame))

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from zerorate import Corrector, Sensor
 from zerorate.rest import histogram
-from zerorate_tools.layout import SETTINGS
+from zerorate_tools.layout import SETTINGS, STATE
 
 MODES = {
     "default": {},
@@ -31,14 +31,15 @@ class Histogram:
     def __init__(self, mode, sensor=None, **more):
         self.c = Corrector(sensor, **{**MODES[mode], **more}).settings
         self.bins = self.c[SETTINGS.BINS]
-        self.h = 10
+        self.sum = STATE.FIT_WEIGHTS  # behind what kernels keep for themselves
+        self.h = self.sum + 2
         self.s = array("i", [0] * (self.h + 2 * self.bins + 1))
         histogram.clear(self.s, self.c, self.h, 0)
 
     def add(self, reading, weight=1):
         """Add `weight` readings at once; 1, or 0 if they were ignored."""
-        self.s[8], self.s[9] = reading * weight, weight
-        return histogram.add(self.s, self.c, self.h, 8)
+        self.s[self.sum], self.s[self.sum + 1] = reading * weight, weight
+        return histogram.add(self.s, self.c, self.h, self.sum)
 
     @property
     def edges(self):
@@ -90,7 +91,7 @@ def test_a_reading_outside_is_ignored_by_option(reading):
     made = Histogram("ignoring")
     before = bytes(made.s)
     assert made.add(reading) == 0
-    made.s[8], made.s[9] = 0, 0
+    made.s[made.sum], made.s[made.sum + 1] = 0, 0
     assert bytes(made.s) == before
 
 

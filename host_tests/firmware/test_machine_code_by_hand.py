@@ -7,7 +7,7 @@ import pytest
 from zerorate import machine_code, trying
 
 _LOW_BITS, _HIGH_BITS = 0x3FF, 1 << 14
-_RIGHT, _KNOWN = bytes.fromhex("201d16a1"), (1, 4, 0, 1, (2, (1, 9)), (1, ()), (1, ()))
+_RIGHT, _KNOWN = bytes.fromhex("201d16a1"), (1, 4, 0, 1, (2, (1, 9), ()), (1, (), ()), (1, (), ()))
 
 
 @pytest.fixture

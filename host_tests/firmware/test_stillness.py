@@ -179,6 +179,15 @@ def test_a_known_bias_stands_through_ten_turns_of_half_a_minute(dps):
     assert sigma[110:, 2].max() > 0.5 * min(abs(dps), 7.0)  # it may have moved as well
 
 
+def test_a_turn_that_begins_and_ends_slowly_is_followed_and_doubted():
+    ship = [(1, 0.25 * np.sin(2 * np.pi * second / 400) * ABOUT_Z) for second in range(400)]
+    error, sigma = followed(KNOWN, (2, SHAKEN), *ship)
+    assert np.abs(error[:, 2]).max() > 0.05
+    wrong = np.abs(error[:, 2]) > np.maximum(0.02, 3 * sigma[:, 2])
+    assert not wrong.any()
+    assert (np.abs(error[:, :2]) < 0.02).all()
+
+
 JUMP_DPS = np.array([1.5, 0.0, 1.0])
 
 

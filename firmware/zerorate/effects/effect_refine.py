@@ -15,10 +15,10 @@ const = int
 ptr32 = None
 # layout: The corrector's state
 _WINDOW_N = const(17)
-_SEGMENT_TOTAL = const(46)
-_STILLNESS = const(50)
-_TEMP = const(51)
-_SEGMENT_WINDOWS = const(52)
+_STILLNESS = const(19)
+_SEGMENT_WINDOWS = const(21)
+_TEMP = const(22)
+_SEGMENT_TOTAL = const(100)
 # layout: The corrector's settings
 _WINDOW_SHIFT = const(4)
 _SEGMENT = const(5)

@@ -15,7 +15,7 @@ from .effect_plays import play
 const = int
 ptr32 = None
 # layout: The corrector's state
-_EFFECT_Q8 = const(68)
+_EFFECT_Q8 = const(75)
 # layout: The effect model and its running state
 _SENSED = const(0)
 _SLOT_COUNT = const(7)

@@ -5,7 +5,7 @@ from math import cos, pi, sin, sqrt
 # layout: names that a board's own compiler reads
 const = int
 # layout: The corrector's state
-_OUT_Q8 = const(62)
+_OUT_Q8 = const(63)
 # layout: The state of the source in motion
 _NODE_ELAPSED_US = const(0)
 _NODE_ANGLE_Q24 = const(2)

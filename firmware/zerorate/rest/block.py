@@ -19,20 +19,19 @@ _FRAME = const(0)
 _COUNTS = const(8)
 _ELAPSED_US = const(16)
 _WINDOW_N = const(17)
-_DIRTY = const(18)
-_REFERENCE = const(19)
-_WINDOW_SUM = const(26)
-_SQUARE_ACCEL = const(33)
-_REST = const(34)
-_SQUARE_GYRO = const(35)
-_WORK = const(60)
-_OUT_Q8 = const(62)
-_CARRY_Q8 = const(65)
-_EFFECT_Q8 = const(68)
-_EFFECT_SUM_Q8 = const(71)
-_TARGET_Q8 = const(74)
-_SQUARE_STEP = const(83)
-_LAST_RATE = const(84)
+_WORK = const(18)
+_WINDOW_SUM = const(38)
+_SQUARE_ACCEL = const(45)
+_SQUARE_GYRO = const(46)
+_SQUARE_STEP = const(47)
+_DIRTY = const(48)
+_LAST_RATE = const(49)
+_EFFECT_SUM_Q8 = const(52)
+_REFERENCE = const(55)
+_OUT_Q8 = const(63)
+_TARGET_Q8 = const(66)
+_CARRY_Q8 = const(72)
+_EFFECT_Q8 = const(75)
 # layout: The corrector's settings
 _LEAP_US = const(1)
 _JUMP_LSB = const(2)
@@ -79,16 +78,10 @@ def plain(s: ptr32, f: ptr32, c: ptr32, p: int) -> int:
 
 def begin_window(s: ptr32, f: ptr32, p: int):
     """Let the frame at word p of f be what the window's sums are less."""
-    for i in range(_WINDOW_SUM, _REST):
+    for i in range(_WINDOW_SUM, _EFFECT_SUM_Q8 + 3):
         s[i] = 0
     for i in range(7):
         s[_REFERENCE + i] = f[p + 1 + i]
-    s[_SQUARE_GYRO] = 0
-    s[_DIRTY] = 0
-    for i in range(3):
-        s[_EFFECT_SUM_Q8 + i] = 0
-        s[_LAST_RATE + i] = 0
-    s[_SQUARE_STEP] = 0
 
 
 def followed(f: ptr32, c: ptr32, p: int, end: int) -> int:

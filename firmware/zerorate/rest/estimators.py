@@ -10,9 +10,9 @@ from .histogram import add, clear, halve, population, read_out_q8
 const = int
 ptr32 = None
 # layout: The corrector's state
-_LEARN_TEMP = const(59)
+_LEARN_TEMP = const(23)
 _CANDIDATE_THIRD = const(7)
-_NEAREST = const(87)
+_NEAREST = const(26)
 # layout: An axis
 _WAITING_SUM = const(0)
 _WAITING_N = const(1)

@@ -15,24 +15,24 @@ from ..arithmetic.fixed import clipped, floating_ratio_q26, fraction_q27, room, 
 const = int
 ptr32 = None
 # layout: The corrector's state
-_TEMP = const(51)
-_FIT_SUM_T = const(87)
-_FIT_SUM_B_Q11 = const(88)
-_FIT_SUM_TT = const(89)
-_FIT_SUM_TB = const(91)
-_FIT_FIRST_T_Q4 = const(93)
-_FIT_FIRST_B_Q8 = const(94)
-_FIT_LOW_Q4 = const(95)
-_FIT_HIGH_Q4 = const(96)
-_FIT_SAMPLES = const(97)
-_FIT_POINTS = const(98)
-_FIT_WEIGHTS = const(99)
-_BEND_SQUARE_Q14 = const(87)
-_BEND_CUBE_Q14 = const(88)
-_BEND_NORM_Q18 = const(89)
-_BEND_DOT_Q12 = const(90)
-_BEND_LEFT_Q6 = const(91)
-_FIT_SUM_W = const(99)
+_TEMP = const(22)
+_FIT_SUM_T = const(26)
+_FIT_SUM_B_Q11 = const(27)
+_FIT_SUM_TT = const(28)
+_FIT_SUM_TB = const(30)
+_FIT_FIRST_T_Q4 = const(32)
+_FIT_FIRST_B_Q8 = const(33)
+_FIT_LOW_Q4 = const(34)
+_FIT_HIGH_Q4 = const(35)
+_FIT_SAMPLES = const(36)
+_FIT_POINTS = const(37)
+_FIT_WEIGHTS = const(103)
+_BEND_SQUARE_Q14 = const(26)
+_BEND_CUBE_Q14 = const(27)
+_BEND_NORM_Q18 = const(28)
+_BEND_DOT_Q12 = const(29)
+_BEND_LEFT_Q6 = const(30)
+_FIT_SUM_W = const(103)
 # layout: An axis
 _LINE_T0_Q4 = const(14)
 _LINE_MEAN_T = const(15)
@@ -72,9 +72,10 @@ _POINTS_OF_A_BEND = const(5)
 def weigh(s: ptr32, c: ptr32, a: int):
     """Weigh the estimators that have enough samples, for a line that serves this temperature."""
     w = _FIT_SUM_T
-    while w <= _FIT_SUM_W:
+    while w <= _FIT_POINTS:
         s[w] = 0
         w += 1
+    s[_FIT_SUM_W] = 0
     i = _FIT_WEIGHTS + 1
     e = a + c[_FIRST_SHORT]
     while e < a + c[_ESTIMATORS_END]:

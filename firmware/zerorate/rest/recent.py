@@ -11,20 +11,24 @@
 from ..arithmetic.fixed import clipped, scaled
 from .bias import curve_q8
 from .estimators import find
-from .stillness import bank_q10, hidden_q4, level_q4, share_q10, size, up
+from .stillness import hidden_q4, level_q4, share_q10, up
 
 # layout: names that a board's own compiler reads
 const = int
 ptr32 = None
 # layout: The corrector's state
-_REST = const(34)
-_TEMP = const(51)
-_NOISE_Q8 = const(53)
-_LEARN_TEMP = const(59)
-_RESTS = const(61)
-_TARGET_Q8 = const(74)
-_MEAN_NOISE_Q8 = const(87)
-_GROWN_Q8 = const(88)
+_REST = const(20)
+_TEMP = const(22)
+_LEARN_TEMP = const(23)
+_DRIFTED_Q4 = const(24)
+_ANCHOR_SIZE = const(25)
+_RESTS = const(62)
+_TARGET_Q8 = const(66)
+_NOISE_Q8 = const(81)
+_MOVED_Q8 = const(88)
+_BANK_Q10 = const(89)
+_MEAN_NOISE_Q8 = const(26)
+_GROWN_Q8 = const(27)
 # layout: The last words before the axes
 _TURN_ON_OFFSET_Q8 = const(-3)
 # layout: An axis
@@ -66,6 +70,7 @@ _PROVISIONAL_Q8 = const(46)
 _TURN_ON_VARIANCE_Q8 = const(47)
 _EVERY = const(48)
 _TURN_HALVES = const(55)
+_ONE_G = const(57)
 # layout: Values that stand for none
 _NO_VALUE = const(-0x3FFFFFFF)
 # layout: end
@@ -157,7 +162,7 @@ def may_turn(s: ptr32, c: ptr32) -> int:
     # It may where its error is along gravity, or too small to show yet, and the bias is well known:
     # from as long a rest as must insist, and found again since power-on. Along: within 22 degrees,
     # and the bank that more than 1 g tells. It shows one beyond the gate.
-    g = size(s)
+    g = s[_ANCHOR_SIZE]
     if g == 0:
         return 0
     turn = 0
@@ -173,9 +178,9 @@ def may_turn(s: ptr32, c: ptr32) -> int:
     aside -= turn * turn
     off = turn if turn > 0 else 0 - turn
     s[_GROWN_Q8] = turn if off > c[_GATE_Q4] >> 3 else 0
-    off = bank_q10(c, g)
+    off = s[_BANK_Q10]
     turn = turn * clipped(410 + off, 1024) >> 10
-    g = level_q4(s, c, g) >> 2  # Q1, twice
+    g = level_q4(s, c) >> 2  # Q1, twice
     return 1 if aside <= turn * turn + g * g else 0
 
 
@@ -196,8 +201,7 @@ def shares(s: ptr32, c: ptr32, a: int, axis: int) -> int:
     """Return 1 if the axis shares more of the turn that is seen than its noise, but not most."""
     if s[_GROWN_Q8] == 0:
         return 0
-    share = size(s)
-    share = share_q10(s, axis, share)
+    share = share_q10(s, axis)
     if share >= _MOST_Q10:
         return 0
     share = clipped(s[_GROWN_Q8] * (share + _LEANT_Q10) >> 7, 0x7FFF)
@@ -252,8 +256,18 @@ def plausible(s: ptr32, c: ptr32, a: int, error: int) -> int:
     return 2
 
 
-def rewalk(s: ptr32, c: ptr32, a: int, excess: int):
+def learn_walk(s: ptr32, c: ptr32, a: int, error: int):
     """Learn the speed of the walk from the squared error that noise does not explain."""
+    excess = error * error - s[a + _OFFSET_VARIANCE_Q8]
+    excess -= s[_MEAN_NOISE_Q8]
+    guess = beyond_q8(s, c, a)  # eleven words: the variance of a guess at this temperature
+    # of one point no slope is known: a jump to another temperature is the curve's, and no walk
+    if s[a + _LINE_POINTS] > 1 or excess >> 4 > guess or excess < c[_TURN_ON_VARIANCE_Q8] << 2:
+        rewalk(s, c, a, excess)
+
+
+def rewalk(s: ptr32, c: ptr32, a: int, excess: int):
+    """Move the speed of the walk towards what such an excess over the offset's age tells."""
     age = (s[a + _OFFSET_AGE_MS] >> 6) + 1
     speed = (clipped(excess, 0x1FFFFF) << 8) // age
     speed = clipped(speed, 0x17FFFFF) << 4  # forty times it, the share of a short age, fits
@@ -352,8 +366,8 @@ def doubt(s: ptr32, a: int, error: int):
         held = held if held > hidden else hidden
     elif s[a + _LEFT_Q4] == _NO_VALUE:
         held = 0  # no turn begins again as it was before a power-off
-    else:
-        held = held if held < hidden else hidden
+    elif s[_DRIFTED_Q4] or held > hidden:
+        held = hidden
     s[a + _DOUBT_Q4] = held
 
 
@@ -367,17 +381,29 @@ def calibrate(s: ptr32, c: ptr32, a: int, error: int):
         relearn_floor(s, c, a, error)
 
 
+def drift(s: ptr32, c: ptr32, a: int, by: int):
+    """Note that the offset moves by so much, LSB Q8: along gravity a slow turn moves it as well."""
+    # From a rest's second segment on, for the first may move it by what the power-on begins off.
+    # More than three sigma of that in one rest may be a turn that began slowly.
+    moved = clipped(by, 0x3FFFF) * up(s, (a - c[_AXES]) // c[_AXIS_WORDS])
+    moved = s[_MOVED_Q8] + (moved + (c[_ONE_G] >> 1)) // c[_ONE_G]
+    if s[_REST] < 2 or s[_REST] > 10 * c[_TURN_HALVES]:
+        moved = 0
+        s[_DRIFTED_Q4] = 0
+    s[_MOVED_Q8] = moved
+    moved = clipped((moved if moved > 0 else 0 - moved) >> 4, 0x7FFF)
+    if moved > s[_DRIFTED_Q4] and moved * moved // 9 > c[_TURN_ON_VARIANCE_Q8]:
+        s[_DRIFTED_Q4] = moved
+
+
 def follow(s: ptr32, c: ptr32, a: int, error: int):
     """Move the offset towards the error by the Kalman gain, and learn the walk from the error."""
-    excess = error * error - s[a + _OFFSET_VARIANCE_Q8]
-    excess -= s[_MEAN_NOISE_Q8]
-    gain = beyond_q8(s, c, a)  # eleven words: the variance of a guess at this temperature
-    # of one point no slope is known: a jump to another temperature is the curve's, and no walk
-    if s[a + _LINE_POINTS] > 1 or excess >> 4 > gain or excess < c[_TURN_ON_VARIANCE_Q8] << 2:
-        rewalk(s, c, a, excess)
+    learn_walk(s, c, a, error)
     gain = gain_q14(s[_GROWN_Q8], s[_MEAN_NOISE_Q8])
-    move_offset(s, a, (gain * error) >> 10)
-    s[a + _LEFT_Q4] = error - (gain * error >> 14)
+    by = (gain * error) >> 10
+    move_offset(s, a, by)
+    drift(s, c, a, by)
+    s[a + _LEFT_Q4] = error - (by >> 4)
     s[a + _OFFSET_VARIANCE_Q8] = left_q8(s, gain)
 
 

@@ -11,31 +11,34 @@ const = int
 ptr32 = None
 # layout: The corrector's state
 _WINDOW_N = const(17)
-_DIRTY = const(18)
-_REFERENCE = const(19)
-_WINDOW_SUM = const(26)
-_SQUARE_ACCEL = const(33)
-_REST = const(34)
-_SQUARE_GYRO = const(35)
-_ANCHOR_Q4 = const(36)
-_LEAN_Q4 = const(39)
-_TILT_NOISE_Q8 = const(42)
-_FIRST_RATE_Q4 = const(43)
-_SEGMENT_TOTAL = const(46)
-_SEGMENT_TEMP = const(49)
-_STILLNESS = const(50)
-_TEMP = const(51)
-_SEGMENT_WINDOWS = const(52)
-_NOISE_Q8 = const(53)
-_TEMP_LEVEL_Q8 = const(54)
-_TEMP_RISE_Q12 = const(55)
-_TEMP_WINDOWS = const(56)
-_TIP_Q8 = const(57)
-_EFFECT_Q8 = const(68)
-_EFFECT_SUM_Q8 = const(71)
-_TARGET_Q8 = const(74)
-_SQUARE_STEP = const(83)
-_LAST_RATE = const(84)
+_STILLNESS = const(19)
+_REST = const(20)
+_SEGMENT_WINDOWS = const(21)
+_TEMP = const(22)
+_DRIFTED_Q4 = const(24)
+_ANCHOR_SIZE = const(25)
+_WINDOW_SUM = const(38)
+_SQUARE_ACCEL = const(45)
+_SQUARE_GYRO = const(46)
+_SQUARE_STEP = const(47)
+_DIRTY = const(48)
+_LAST_RATE = const(49)
+_EFFECT_SUM_Q8 = const(52)
+_REFERENCE = const(55)
+_TARGET_Q8 = const(66)
+_EFFECT_Q8 = const(75)
+_NOISE_Q8 = const(81)
+_TEMP_RISE_Q12 = const(82)
+_TEMP_WINDOWS = const(83)
+_SEGMENT_TEMP = const(84)
+_TIP_Q8 = const(85)
+_TEMP_LEVEL_Q8 = const(87)
+_BANK_Q10 = const(89)
+_ANCHOR_Q4 = const(90)
+_LEAN_Q4 = const(93)
+_TILT_NOISE_Q8 = const(96)
+_FIRST_RATE_Q4 = const(97)
+_SEGMENT_TOTAL = const(100)
 # layout: The corrector's settings
 _WINDOW = const(3)
 _WINDOW_SHIFT = const(4)
@@ -79,15 +82,9 @@ def gather(s: ptr32, c: ptr32, x: ptr32) -> int:
     if s[_WINDOW_N] == 0:
         while i < 7:
             s[_REFERENCE + i] = x[i]
-            s[_WINDOW_SUM + i] = 0
             i += 1
-        s[_SQUARE_ACCEL] = 0
-        s[_SQUARE_GYRO] = 0
-        s[_SQUARE_STEP] = 0
-        for i in range(3):
-            s[_LAST_RATE + i] = 0
-            s[_EFFECT_SUM_Q8 + i] = 0
-        s[_DIRTY] = 0
+        for i in range(_WINDOW_SUM, _EFFECT_SUM_Q8 + 3):
+            s[i] = 0
     s[_WINDOW_N] += 1
     if s[_DIRTY] == 0:
         i = 0
@@ -201,6 +198,8 @@ def begin(s: ptr32, c: ptr32, anchored: int):
     if anchored == 0:
         begin_tilt(s)
         s[_REST] = 0
+        s[_ANCHOR_SIZE] = size(s)
+        s[_BANK_Q10] = bank_q10(s, c)
     if s[_REST] < _MOST_SEGMENTS:
         s[_REST] += 1
     s[_SEGMENT_TEMP] = 0
@@ -328,29 +327,27 @@ def size(s: ptr32) -> int:
     return root(total)
 
 
-def level_q4(s: ptr32, c: ptr32, g: int) -> int:
-    """Return the turn about a level axis that gravity of that size hides yet: LSB, Q4."""
-    # g: of 0 nothing is hidden across it, for there is no gravity.
-    if g == 0:
-        return 0
-    moved = root(s[_TIP_Q8] + c[_TIP_LIMIT_Q8]) * c[_TILT_SPEED] // g
+def level_q4(s: ptr32, c: ptr32) -> int:
+    """Return the turn about a level axis that gravity hides yet: LSB, Q4."""
+    if s[_ANCHOR_SIZE] == 0:
+        return 0  # nothing is hidden across it, for there is no gravity
+    moved = root(s[_TIP_Q8] + c[_TIP_LIMIT_Q8]) * c[_TILT_SPEED] // s[_ANCHOR_SIZE]
     return clipped(moved // (s[_REST] if s[_REST] else 1), 0x3FFF)
 
 
 def tilting_q4(s: ptr32, c: ptr32) -> int:
     """Return the same of a rest that goes on, also of one that has no segment yet."""
-    g = size(s)
-    g = level_q4(s, c, g)
+    g = level_q4(s, c)
     if s[_REST] < 2 and s[_SEGMENT_WINDOWS]:
         g = g * c[_SEGMENT] // s[_SEGMENT_WINDOWS]
     return clipped(g, 0x3FFF)
 
 
-def steady_q4(s: ptr32, c: ptr32, share: int) -> int:
+def steady_q4(s: ptr32, c: ptr32) -> int:
     """Return the turn about the vertical that lasts as long as the rest, one sigma, LSB Q4."""
     # As fast a turn as the bias is as likely as that bias; of all turns as steady half end in time.
     total = c[_TURNING_LSB] * c[_TURNING_LSB]
-    rate = clipped(share * c[_TURNING_LSB] >> 10, 0x7FF) * _BANKED
+    rate = clipped(s[_BANK_Q10] * c[_TURNING_LSB] >> 10, 0x7FF) * _BANKED
     total += rate * rate
     for i in range(3):
         rate = clipped(s[_TARGET_Q8 + i] >> 8, 0x3FFF)
@@ -361,26 +358,24 @@ def steady_q4(s: ptr32, c: ptr32, share: int) -> int:
     return total >> rate if rate < 30 else 0
 
 
-def bank_q10(c: ptr32, g: int) -> int:
+def bank_q10(s: ptr32, c: ptr32) -> int:
     """Return the tangent of the bank that makes an acceleration more than 1 g."""
     # It is the bank of an aircraft in a coordinated turn, whose load is 1 / cos(bank).
-    over = clipped((g << 10) // c[_ONE_G], 0x3FFF) - 1024
+    over = clipped((s[_ANCHOR_SIZE] << 10) // c[_ONE_G], 0x3FFF) - 1024
     return root(over << 11) if over > 0 else 0
 
 
-def share_q10(s: ptr32, axis: int, g: int) -> int:
+def share_q10(s: ptr32, axis: int) -> int:
     """Return which share of a turn about the vertical the axis has, without its sign."""
-    # g: size(s), a square root that whoever calls has at hand
     share = up(s, axis)
-    return ((share if share > 0 else 0 - share) << 10) // (g + 1)
+    return ((share if share > 0 else 0 - share) << 10) // (s[_ANCHOR_SIZE] + 1)
 
 
 def hidden_q4(s: ptr32, c: ptr32, axis: int) -> int:
     """Return how much of a turn the rest so far may hide on the axis: one sigma, LSB Q4."""
-    g = size(s)
-    share = bank_q10(c, g)
-    turn = steady_q4(s, c, share)
-    if g and s[_REST]:
-        share += share_q10(s, axis, g)
-        turn = (turn * (share if share < 1024 else 1024) >> 10) + level_q4(s, c, g)
+    turn = steady_q4(s, c)
+    turn = turn if turn > s[_DRIFTED_Q4] else s[_DRIFTED_Q4]
+    if s[_ANCHOR_SIZE] and s[_REST]:
+        share = share_q10(s, axis) + s[_BANK_Q10]
+        turn = (turn * (share if share < 1024 else 1024) >> 10) + level_q4(s, c)
     return clipped(turn, _MOST_HIDDEN_Q4)

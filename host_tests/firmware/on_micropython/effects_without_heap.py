@@ -8,7 +8,7 @@ from zerorate.model import EffectModel
 from zerorate.sensor import Sensor
 
 # layout: The corrector's state
-_EFFECT_Q8 = const(68)
+_EFFECT_Q8 = const(75)
 # layout: end
 
 model = EffectModel()

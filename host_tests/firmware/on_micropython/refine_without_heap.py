@@ -9,10 +9,10 @@ from zerorate.sensor import Sensor
 
 # layout: The corrector's state
 _WINDOW_N = const(17)
-_SEGMENT_TOTAL = const(46)
-_STILLNESS = const(50)
-_TEMP = const(51)
-_FIT_WEIGHTS = const(99)
+_STILLNESS = const(19)
+_TEMP = const(22)
+_SEGMENT_TOTAL = const(100)
+_FIT_WEIGHTS = const(103)
 # layout: The corrector's settings
 _WINDOW_SHIFT = const(4)
 _SEGMENT = const(5)

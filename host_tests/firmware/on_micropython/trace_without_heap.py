@@ -13,7 +13,7 @@ from zerorate import Corrector, Sensor
 _STRETCH = 500
 _MOST = 73
 # layout: The corrector's state
-_OUT_Q8 = const(62)
+_OUT_Q8 = const(63)
 # layout: end
 
 mode, updates = sys.argv[1], int(sys.argv[2])

@@ -5,6 +5,7 @@ bytes everywhere. Code is execute-only: numbers are made by instructions, never 
 the code, for MicroPython aligns frozen ARMv6-M code to two bytes and literals want four.
 """
 
+import re
 import struct
 import subprocess
 import tempfile
@@ -40,6 +41,8 @@ _ALWAYS = "static inline __attribute__((always_inline))"
 _WHOLE = '_Pragma("clang loop unroll(full)")'
 INLINED = ("step_step", "step_admit")
 UNROLLED = ("stillness_gather", "step_finish")
+# What one window in eight runs through, where a board has little heap: small before fast.
+SMALL = re.compile(r"^static (?=\w+ (?:bias|estimators|fit|histogram|recent)_\w+\()", re.MULTILINE)
 # ARMv6-M cannot divide: most quotients of the kernels are short, and this is short with them
 _SHORT_QUOTIENT = """\
 static __attribute__((noinline)) uint32_t quotient(uint32_t a, uint32_t b) {
@@ -132,7 +135,8 @@ def machine_code(kernels: Kernels, part: str, processor: str, fast: bool = False
     if arithmetic == _WITHOUT_DIVISION:
         arithmetic = (_FAST_QUOTIENT if what.divides else _SHORT_QUOTIENT) + arithmetic
     text = kernels_in_c(kernels, *what.kernels, arithmetic=arithmetic)
-    text = (text if fast else _hinted(text)) + _ENTRY.format(body=what.body)
+    text = text if fast else _hinted(text, small="-Os" in how.aims)
+    text += _ENTRY.format(body=what.body)
     with tempfile.TemporaryDirectory(prefix="zerorate-native-") as folder:
         aims = ("-O2",) if fast else how.aims
         codes = [_linked(Path(folder), text, how, base, aims) for base in (0, 0x4000)]
@@ -143,14 +147,14 @@ def machine_code(kernels: Kernels, part: str, processor: str, fast: bool = False
     return codes[0]
 
 
-def _hinted(text: str) -> str:
-    """The C with what is asked for the kernels that every sample runs through."""
+def _hinted(text: str, small: bool) -> str:
+    """The C with what is asked for the kernels that every sample runs through, and the others."""
     for name in INLINED:
         text = text.replace(f"static int32_t {name}(", f"{_ALWAYS} int32_t {name}(")
     for name in UNROLLED:
         body = text.partition(f" {name}(")[2].partition("\n}\n")[0]
         text = text.replace(body, body.replace("    while ", f"    {_WHOLE} while "))
-    return text
+    return SMALL.sub("static __attribute__((minsize)) ", text) if small else text
 
 
 def _linked(folder: Path, text: str, how: Processor, base: int, aims: tuple[str, ...]) -> bytes:

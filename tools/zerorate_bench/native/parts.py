@@ -148,9 +148,13 @@ def answer_by(run: Callable[..., Any], part: str) -> bytes:
     return answer(run, known(part))
 
 
-def _sparse(words: Sequence[int]) -> tuple[int, bytes]:
-    pairs = [number for at, word in enumerate(words) if word for number in (at, word)]
-    return len(words), array("i", pairs).tobytes()
+def _sparse(words: Sequence[int]) -> tuple[int, bytes, bytes]:
+    pairs: dict[str, list[int]] = {"h": [], "i": []}
+    for at, word in enumerate(words):
+        if word:
+            pairs["h" if -0x8000 <= word < 0x8000 else "i"] += at, word
+    short, whole = (array(kind, some).tobytes() for kind, some in pairs.items())
+    return len(words), short, whole
 
 
 def _corrector() -> Corrector:

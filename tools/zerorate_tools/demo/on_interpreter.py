@@ -12,8 +12,8 @@ from zerorate_i2c.mpu6050 import MPU6050, RESTARTED, SUSPECT
 # layout: names that a board's own compiler reads
 const = int
 # layout: The corrector's state
-_OUT_Q8 = const(62)
-_EFFECT_Q8 = const(68)
+_OUT_Q8 = const(63)
+_EFFECT_Q8 = const(75)
 # layout: end
 _ROWS = 256
 

@@ -9,10 +9,10 @@ from zerorate.model import EffectModel
 
 _GAP = -0x80000000
 # layout: The corrector's state
-_OUT_Q8 = const(62)
-_EFFECT_Q8 = const(68)
-_QUALITY_Q8 = const(77)
-_SOURCE = const(80)
+_OUT_Q8 = const(63)
+_QUALITY_Q8 = const(69)
+_EFFECT_Q8 = const(75)
+_SOURCE = const(78)
 # layout: The effect model and its running state
 _REFINE_ON = const(33)
 _CHANNELS = const(111)
