@@ -3,6 +3,7 @@
 from collections.abc import Callable
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 from scipy.signal import filtfilt
 
 #: Times the usual between two samples from which on it is a gap, which no window spans.
@@ -24,13 +25,19 @@ def evenly(t_us: np.ndarray) -> tuple[np.ndarray, Put]:
     late = _taken_late(stamped, usual)
     if np.ptp(late) < _EVEN * usual:
         return t_us, lambda samples: samples
-    at_us = np.maximum.accumulate(t_us - stamped + late)
+    at_us = np.maximum.accumulate(t_us - stamped + late) + 1e-3 * np.arange(len(t_us))
     clock = np.arange(at_us[0], at_us[-1], usual)
     after = np.searchsorted(at_us, clock, side="right").clip(1, len(at_us) - 1)
     clock, after = clock[short[after - 1]], after[short[after - 1]]
     before_us, after_us = at_us[after - 1], at_us[after]
     share = ((clock - before_us) / np.maximum(after_us - before_us, 1.0))[:, None]
-    return clock, lambda x: x[after - 1] + share * (x[after] - x[after - 1])
+
+    def put(samples: np.ndarray) -> np.ndarray:
+        if np.isfinite(samples).all():  # a line would lessen a swing of a second by 0.5 % at 25 Hz
+            return np.asarray(CubicSpline(at_us, samples)(clock))
+        return samples[after - 1] + share * (samples[after] - samples[after - 1])
+
+    return clock, put
 
 
 def _taken_late(stamped: np.ndarray, usual: float) -> np.ndarray:

@@ -167,7 +167,11 @@ def moving_of(path: AnyPath, ticks: Ticks | None = None) -> Moving | None:
         return None
     clipped = (np.abs(np.hstack([gyro, accel])) >= _RAIL).any(axis=1) | saturated(gyro)
     t_us, put = evenly(t_us)
-    rate, accel, usable = put(rate), put(accel), put(1.0 * clipped[:, None])[:, 0] == 0.0
+    rate, accel, usable = (
+        put(rate),
+        put(accel),
+        put(np.where(clipped, np.nan, 0.0)[:, None])[:, 0] == 0.0,
+    )
     ticks = ticks or read_ticks(path, TICK_S)
     still = still_ticks(ticks)
     rests = _rests(ticks, still)
