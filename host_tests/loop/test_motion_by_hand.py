@@ -316,10 +316,14 @@ def test_a_heading_that_is_far_off_anyway_hardly_counts_but_one_that_gets_so(
     assert bool(weight[-1] > 0.5 * weight[0]) is counts
 
 
-@pytest.mark.parametrize("jitter_ms, lost, most_ms", [(0, 0.0, 1e-3), (0, 0.03, 1e-3), (4, 0.0, 1)])
-def test_samples_are_read_on_an_even_clock(jitter_ms, lost, most_ms):
+@pytest.mark.parametrize(
+    "jitter_ms, batch, lost, most_ms",
+    [(0, 1, 0.0, 1e-3), (0, 1, 0.03, 1e-3), (4, 1, 0.0, 1), (0, 3, 0.0, 6), (0, 3, 0.01, 25)],
+)
+def test_samples_are_read_on_an_even_clock(jitter_ms, batch, lost, most_ms):
     rng, taken_us = np.random.default_rng(1), np.arange(20_000) * 10_000
     late_us = rng.integers(0, 1000 * jitter_ms + 1, len(taken_us))
+    late_us += (-1 - np.arange(len(taken_us))) % batch * 10_000
     kept = rng.random(len(taken_us)) >= lost
     taken_us, stamped_us = taken_us[kept], (taken_us + late_us)[kept]
     stamped_us[5000:] += 100_000

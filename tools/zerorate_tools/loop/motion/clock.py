@@ -8,24 +8,29 @@ from scipy.signal import filtfilt
 
 #: Times the usual between two samples from which on it is a gap, which no window spans.
 GAP = 5
+#: Samples over which time goes on, though up to four come at once as radios send them.
+_BATCH = 12
 #: Seconds after which a late stamp has passed, whoever made it, and a late sample has not.
 _LAG_S = 1.0
 #: Share of the time between samples within which they are even.
 _EVEN = 0.01
+#: Share of it that samples of one stamp are apart at least: no cubic goes through two at once.
+_LEAST = 0.1
 
 Put = Callable[[np.ndarray], np.ndarray]
 
 
 def evenly(t_us: np.ndarray) -> tuple[np.ndarray, Put]:
     """Times (m,) of an even clock in us, none in gaps, and what puts samples (n, k) on it."""
-    apart = np.diff(t_us).astype(float)
-    short = apart <= GAP * np.median(apart)
+    apart, some = np.diff(t_us).astype(float), min(_BATCH, len(t_us) // 2)
+    short = apart <= GAP * np.median(t_us[some:] - t_us[:-some]) / some
     usual = float(apart[short].mean())
     stamped = np.append(0.0, np.cumsum(np.where(short, apart - usual, 0.0)))
     late = _taken_late(stamped, usual)
     if np.ptp(late) < _EVEN * usual:
         return t_us, lambda samples: samples
-    at_us = np.maximum.accumulate(t_us - stamped + late) + 1e-3 * np.arange(len(t_us))
+    apart_us = _LEAST * usual * np.arange(len(t_us))
+    at_us = np.maximum.accumulate(t_us - stamped + late - apart_us) + apart_us
     clock = np.arange(at_us[0], at_us[-1], usual)
     after = np.searchsorted(at_us, clock, side="right").clip(1, len(at_us) - 1)
     clock, after = clock[short[after - 1]], after[short[after - 1]]
