@@ -2,6 +2,10 @@
 
 from math import cos, pi, sin, sqrt
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from ..corrector import Corrector
+
 # layout: names that a board's own compiler reads
 const = int
 # layout: The corrector's state
@@ -20,7 +24,7 @@ _LONGEST = const(16)
 _LEAST_NODES = const(8)  # a second, whose mean force says where up is
 
 
-def orientation(corrector):
+def orientation(corrector: "Corrector") -> "tuple[float, float, float, float] | None":
     """Return the orientation now, a unit quaternion (w, x, y, z), or None while too little is held.
 
     It turns body vectors into a level frame, z up, whose heading is that of the body up to 16 s

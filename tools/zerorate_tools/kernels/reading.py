@@ -1,6 +1,6 @@
 """Reads the kernels of the firmware: which files hold them, what each calls, which constants.
 
-A kernel is an annotated function of any file below the package; only kernels have annotations. A
+A kernel is a function of any file below the package with bare annotations, int or ptr32. A
 file is known by its stem, wherever it lies, so that `from ..fit.line import draw_line` and
 `from .line import draw_line` are the same.
 """
@@ -115,4 +115,5 @@ def kernel_files(package: Path) -> list[Path]:
 
 
 def _kernel(function: ast.FunctionDef) -> bool:
-    return bool(function.returns) or any(a.annotation for a in function.args.args)
+    given = [function.returns, *(a.annotation for a in function.args.args)]
+    return any(isinstance(one, ast.Name) for one in given)
