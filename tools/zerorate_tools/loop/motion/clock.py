@@ -56,5 +56,5 @@ def _taken_late(stamped: np.ndarray, usual: float) -> np.ndarray:
     once, twice = (((stamped[k:] - stamped[:-k]) ** 2).mean() for k in (n, 2 * n))
     q, r = max((twice - once) / n, 0.0), max(once - 0.5 * twice, 0.0)
     ratio = max(q / max(r, 1e-9), len(stamped) ** -2.0)
-    power = 1.0 + 0.5 * ratio - np.sqrt(ratio + 0.25 * ratio**2)
+    power = 1.0 / (1.0 + 0.5 * ratio + np.sqrt(ratio + 0.25 * ratio**2))
     return np.asarray(filtfilt([1.0 - power], [1.0, -power], stamped))
