@@ -87,9 +87,10 @@ def seen_in_words(before: float, unit: str) -> str:
 UNSEEN, _CLEAR = 0.005, 1 / 3
 #: Of devices without errors, so many may be said to have one.
 _LEVEL = 1 / 200
-#: By how much more may be left and be no worse, as the loop's figures count harm. An attitude given
-#: sees every turn, but headings of half a minute scatter by as much; gravity sees fewer.
-_NO_WORSE = {GIVEN: 1.02, GRAVITY: 1.0}
+#: By how much more may be left and be no worse, as the loop's figures count harm: headings of half
+#: a minute, and tilts of a recording held out, scatter by as much. Parts of a recording that others
+#: of it were fitted to share its pushes, and must get better.
+_NO_WORSE, _BETTER = 1.02, 1.0
 #: Of an entry: what a share of nothing leaves of it in floats is none.
 _DECIMALS = 12
 #: Of the whole matrix: a part that is smaller is not named.
@@ -140,7 +141,8 @@ def _judged_by_heading(shown: RateScale, train: list[Moving], holdout: list[Movi
     heading = heading_lost(list(_left_out(shown, train, holdout)))
     fitted = heading_lost([(m, shown.deployed) for m in train])
     told = [lost for lost in (heading, fitted) if lost is not None]
-    gains = [_NO_WORSE[shown.reference] * before - after for before, after in told]
+    most = _NO_WORSE if shown.reference == GIVEN else _BETTER
+    gains = [most * before - after for before, after in told]
     worse = next((lost for lost, gain in zip(told, gains) if gain <= 0), None)
     return replace(shown, heading=heading, worse=worse, gains=np.r_[shown.gains, gains])
 
@@ -204,6 +206,7 @@ def _by_windows(train: list[Moving], holdout: list[Moving]) -> RateScale | None:
     by_it = [f for f in fitted if (f.moving.given is not None) == (reference == GIVEN)]
     told = [j for j in judged if (j.bare.moving.given is not None) == (reference == GIVEN)]
     before, after = _tilt([j.tilts() for j in told])
+    most = _NO_WORSE if held_out or reference == GIVEN else _BETTER
     fastest = np.degrees(np.max([np.abs(f.moving.rate).max(axis=0) for f in fitted], axis=0))
     sigma = np.sqrt(np.diag(np.linalg.pinv(shown.normal + _FAINT)))
     unseen = sigma > np.maximum(UNSEEN, _CLEAR * np.abs(entries))
@@ -217,7 +220,7 @@ def _by_windows(train: list[Moving], holdout: list[Moving]) -> RateScale | None:
         deployed=np.round(deployed, _DECIMALS).reshape(3, 3) + 0.0,  # no -0.0
         kind=_kind(entries, covariance),
         reference=reference,
-        gains=np.array([gain, _NO_WORSE[reference] * before - after]),
+        gains=np.array([gain, most * before - after]),
         before=before,
         after=after,
         unit=UNIT[reference],
