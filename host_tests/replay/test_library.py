@@ -180,7 +180,8 @@ def test_of_a_store_the_newest_whole_record_counts(tmp_path, corrector, capsys):
     path = tmp_path / "learned.bin"
     path.write_bytes(memory.bytes)
     assert main(["state", "show", str(path), "--find", "out_q8[0]"]) == 0
-    assert capsys.readouterr().out.split()[-5:] == ["62", "OUT_Q8[0]", "512", "2", "LSB"]
+    shown = [str(STATE.OUT_Q8), "OUT_Q8[0]", "512", "2", "LSB"]
+    assert capsys.readouterr().out.split()[-5:] == shown
     assert main(["state", "show", str(path), "--find", "nosuch"]) == 2
     assert "nosuch" in capsys.readouterr().err
     assert store.save_model(b"ZRM")  # a record of another kind

@@ -51,11 +51,12 @@ def ordinary(
         columns = np.column_stack([block_basis(t, s) for t in terms])
         x.append(s.less_offsets(columns, there)[there])
         y.append(s.less_offsets(rate, there)[there])
-    scale = np.maximum(np.vstack(x).std(axis=0), 1e-300)
+    scale = np.vstack(x).std(axis=0)
+    scale[scale == 0] = 1.0  # nothing was seen of it
     rows, known = sum(map(len, x)), of_data_sheets(float(np.vstack(y).var()))
     plays = np.array([t.memory == "play" for t in terms])
     precision = plays * rows * _RIDGE * scale**2 + [known * is_of_force(t) for t in terms]
-    if precision.any():
+    if rows and precision.any():
         x.append(np.diag(np.sqrt(precision)))
         y.append(np.zeros((len(terms), 3)))
     return np.linalg.lstsq(np.vstack(x) / scale, np.vstack(y), rcond=1e-12)[0] / scale[:, None]

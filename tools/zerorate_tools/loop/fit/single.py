@@ -213,10 +213,11 @@ def nats(before: np.ndarray, after: np.ndarray, blocks: Sequence[int] | np.ndarr
 
 def held(term: Term, sessions: Sequence[Session]) -> Term:
     """The term held at the edges of what some sessions show of its source; one that reaches beyond
-    all that the source does, as far beyond them; one with a curve, where that ends."""
-    if term.table:
-        return term
+    all that the source does, as far beyond them; one with a curve, where that ends; where nothing
+    is seen, as it is."""
     seen = np.concatenate([s.block_mean(s.source(term.source))[s.available] for s in sessions])
+    if term.table or not len(seen):
+        return term
     every = np.concatenate([s.source(term.source) for s in sessions])
     margins = np.maximum([every.min() - term.lo, term.hi - every.max()], 0.0)
     below, above = np.where(np.isfinite(margins), margins, 0.0)

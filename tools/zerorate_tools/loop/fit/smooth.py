@@ -75,7 +75,8 @@ def _curve(
         y.append(s.less_offsets(s.rate_dps, there)[there])
     every, rates, plain = np.vstack(x), np.vstack(y), 1 + len(beside)
     free = len(rates) - plain - sum(1 + len(s.steps) for s in sessions)
-    scale = np.maximum(every[:, :plain].std(axis=0), 1e-300)
+    scale = every[:, :plain].std(axis=0)
+    scale[scale == 0] = 1.0  # nothing was seen of it
     line, shares = every[:, :plain] / scale, every[:, plain:]
     own = np.linalg.qr(line)[0]
     left, waves = (v - own @ (own.T @ v) for v in (rates, shares))

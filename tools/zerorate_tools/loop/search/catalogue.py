@@ -9,7 +9,6 @@ import numpy as np
 
 from ...model import effects
 from ...model.effects import ANY_CHANNEL, SUPPLY, Effect, of_any_channel, table_of
-from ...model.model import ACCELERATIONS
 from ...model.term import Term
 from ..fit.free_curve import is_curve, parts
 from ..motion.columns import LONGEST_S
@@ -202,12 +201,6 @@ def lags(sessions: list[Session]) -> list[Term]:
         for lag in _LAGS_S
     ]
     return [replace(t, power=k, power_first=k > 1) for t in own for k in (1, 2)]
-
-
-def forces(sessions: list[Session]) -> list[Term]:
-    """All accelerations and their squares, where they are known."""
-    there = [n for n in ACCELERATIONS if n in common_sources(sessions)]
-    return [Term(n, power=k) for n in there for k in (1, 2)]
 
 
 def late(sessions: list[Session]) -> list[Candidate]:

@@ -7,7 +7,6 @@ stand beside all others.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from itertools import pairwise
 
 import numpy as np
 from scipy.stats import chi2
@@ -17,7 +16,7 @@ from ..fit.regression import Events, Regression, predicted
 from ..fit.shrunk import shrink
 from ..fit.surrogates import NullRatios
 from ..read.sessions import Session
-from .catalogue import Candidate, candidates, forces, lags, late
+from .catalogue import Candidate, candidates, lags, late
 from .decide import LEVEL
 from .drift_test import follows_time
 from .refine import refined
@@ -76,43 +75,33 @@ def steps_and_lags(
     A kink or a loop that the terms lack is made of steps, too, a part that is late behind its
     thermometer makes one at every corner, and a channel that jumps makes the bias jump: what
     follows a channel is taken beside the terms first, wherever it explains more than the steps do,
-    or much beside them. A bias that jumps with a channel also hides steps, so what follows more
-    than temperature is taken where there are none. What follows time alone is not: a step is one.
-    All lags and all accelerations together, shrunk, explain a step at a corner or a change of pose.
+    or much beside them. What follows time alone is not: a step is one.
     recordings: of one device, each searched by itself, which share the level.
     """
-    beside, steps = _forms_and_steps(regression, terms, recordings)
+    beside, sessions = list(terms), regression.sessions
+    forms = [c for c in candidates(sessions) if not follows_time(c)] + late(sessions)
     lagging = dict[Term, float]()
-    if steps:
-        regression.heed_data_sheets(terms)
+    while True:
+        regression.set_events([])
+        steps = sorted(_all(regression, beside, recordings), key=lambda s: -s.ratio)
+        if not steps:
+            break
+        form, gain = _best_form(regression, beside, forms)
+        if gain < steps[0].ratio:
+            _set(regression, steps, None)
+            form, gain = _best_form(regression, beside, forms)
+        if form is None or gain < _A_FORM:
+            break
+        beside += refined(regression, beside, form).terms
+    if steps and lags(sessions):
         lagging = _shrunk_lags(regression, terms)
-        every = [*beside, *lagging, *forces(regression.sessions)]
         with regression.shrinking(lagging):
-            stand = _all(regression, every, recordings)
+            stand = _all(regression, [*beside, *lagging], recordings)
         steps = [s for s in steps if any(_is_same(s, other) for other in stand)]
     _set(regression, steps, None)
     steps = _sized(regression, beside, steps, [])
     fitted, own = regression.fit(beside).coefficients[len(terms) :], beside[len(terms) :]
     return [s for s in steps if not _is_timing(regression, own, fitted, s)], lagging
-
-
-def _forms_and_steps(
-    regression: Regression, terms: Terms, recordings: int
-) -> tuple[list[Term], list[Step]]:
-    """The terms with the forms taken beside them, and the steps beside both, strongest first."""
-    beside, sessions = list(terms), regression.sessions
-    forms = [c for c in candidates(sessions) if not follows_time(c)] + late(sessions)
-    jumping = [c for c in forms if {*c.sources} - {"temp"}]
-    while True:
-        regression.set_events([])
-        steps = sorted(_all(regression, beside, recordings), key=lambda s: -s.ratio)
-        form, gain = _best_form(regression, beside, forms if steps else jumping)
-        if steps and gain < steps[0].ratio:
-            _set(regression, steps, None)
-            form, gain = _best_form(regression, beside, forms)
-        if form is None or gain < _A_FORM:
-            return beside, steps
-        beside += refined(regression, beside, form).terms
 
 
 def _is_same(a: Step, b: Step) -> bool:
@@ -125,8 +114,6 @@ def _shrunk_lags(regression: Regression, terms: Terms) -> dict[Term, float]:
     because a form or a step takes the place of several."""
     regression.set_events([])
     late = lags(regression.sessions)
-    if not late:
-        return {}
     own = slice(len(terms), len(terms) + len(late))
     products = regression.cross_products([*terms, *late])
     squares = np.einsum("sgjj->j", products.zz)[own]
@@ -165,54 +152,13 @@ def column(regression: Regression, step: Step) -> list[np.ndarray]:
 
 
 def _all(regression: Regression, terms: Terms, recordings: int = 1) -> list[Step]:
-    """Abrupt steps that stand beside each other; the regression is left without them, and with
-    every disturbance's blocks on a line between their neighbours."""
+    """Abrupt steps that stand beside each other; the regression is left as it was."""
     kept = regression.events()
-    steps = _less_disturbed(regression, terms, recordings, kept)
+    steps = standing(regression, terms, recordings, kept)
     seen = [s for s in steps if not _is_unseen(regression.sessions[s.session], s.block)]
     abrupt = [s for s in seen if _is_no_ramp(regression, terms, steps, s, kept)]
     _set(regression, [], kept)
     return abrupt
-
-
-def _less_disturbed(
-    regression: Regression, terms: Terms, recordings: int, kept: Events
-) -> list[Step]:
-    """Steps that stand where no two of them undo each other at once: what the terms explain is no
-    disturbance, so the rates are taken up anew."""
-    regression.rate = [s.rate_dps for s in regression.sessions]
-    regression.prepare()
-    for _ in range(MOST_PER_SESSION):
-        steps = standing(regression, terms, recordings, kept)
-        disturbed = [pair for pair in pairwise(sorted(steps, key=_place)) if _undoes(*pair)]
-        if not disturbed:
-            return steps
-        regression.set_events([], kept)
-        for a, b in disturbed:
-            _hold(regression, a, b)
-        regression.prepare()
-    return standing(regression, terms, recordings, kept)
-
-
-def _place(step: Step) -> tuple[int, float]:
-    return step.session, step.block - step.share
-
-
-def _undoes(a: Step, b: Step) -> bool:
-    apart = (b.block - b.share) - (a.block - a.share)
-    undone = a.size_dps @ b.size_dps < 0
-    return bool(a.session == b.session and apart <= NEAR and undone)
-
-
-def _hold(regression: Regression, a: Step, b: Step) -> None:
-    """The blocks from one step to another."""
-    rate = regression.rate[a.session].copy()
-    at = np.arange(a.block - int(np.ceil(a.share)), b.block)
-    there = regression.sessions[a.session].available.copy()
-    there[at] = False
-    for axis in range(3):
-        rate[at, axis] = np.interp(at, np.flatnonzero(there), rate[there, axis])
-    regression.rate[a.session] = rate
 
 
 def standing(regression: Regression, terms: Terms, recordings: int, kept: Events) -> list[Step]:

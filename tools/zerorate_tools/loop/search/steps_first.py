@@ -5,6 +5,7 @@ Each stretch between two steps has an offset of its own in every fit from then o
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 from scipy.stats import chi2
@@ -13,7 +14,7 @@ from ...model.term import Term, Terms
 from ..fit.common_cause import RARE
 from ..fit.regression import Regression
 from ..read.sessions import Session
-from .steps import NEAR, Step, steps_and_lags
+from .steps import MOST_PER_SESSION, NEAR, Step, standing, steps_and_lags
 
 #: Ticks around a moment in which the accelerometer is looked at; what it must see, in g and in
 #: times its usual change.
@@ -27,15 +28,16 @@ def remove_steps(sessions: Sequence[Session]) -> list[Session]:
 
 def _steps(session: Session, recordings: int) -> list[Step]:
     """Those of one session of so many in their order; one in the middle of a block, which two
-    places in it or two blocks in turn show, is one."""
+    blocks in turn show, is one."""
     out: list[Step] = []
     beside = bend_of(session)
     regression = Regression([session])
+    hold_disturbed(regression, beside, recordings)
     every, late = steps_and_lags(regression, beside, recordings)
     regression.set_events([])
     every = [s for s in every if not _is_thermometers(regression, beside, late, s)]
     for step in sorted(every, key=lambda s: s.block):
-        if out and step.block - out[-1].block <= 1 and step.size_dps @ out[-1].size_dps > 0:
+        if out and step.block - out[-1].block == 1 and step.size_dps @ out[-1].size_dps > 0:
             deviation = np.hypot(step.deviation_dps, out[-1].deviation_dps)
             size = out[-1].size_dps + step.size_dps
             step = replace(out.pop(), size_dps=size, deviation_dps=deviation)
@@ -140,3 +142,34 @@ def _by_accelerometer(session: Session, first: int, last: int) -> tuple[int | No
         return None, ""
     said = f"the accelerometer saw {seen[at]:.2g} g at that moment: mechanical stress or a knock"
     return at, said
+
+
+def hold_disturbed(regression: Regression, terms: Terms, recordings: int = 1) -> None:
+    """Hold every disturbance's blocks on a line between their neighbours."""
+    kept = regression.events()
+    for _ in range(MOST_PER_SESSION):
+        steps = sorted(standing(regression, terms, recordings, kept), key=lambda s: s.block)
+        regression.set_events([], kept)
+        disturbed = [(a, b) for a, b in pairwise(steps) if _undoes(a, b)]
+        if not disturbed:
+            break
+        for a, b in disturbed:
+            _hold(regression, a, b)
+        regression.prepare()
+
+
+def _undoes(a: Step, b: Step) -> bool:
+    apart = (b.block - b.share) - (a.block - a.share)
+    undone = a.size_dps @ b.size_dps < 0
+    return bool(a.session == b.session and apart <= NEAR and undone)
+
+
+def _hold(regression: Regression, a: Step, b: Step) -> None:
+    """The blocks from one step to another."""
+    rate = regression.rate[a.session].copy()
+    at = np.arange(a.block - int(np.ceil(a.share)), b.block)
+    there = regression.sessions[a.session].available.copy()
+    there[at] = False
+    for axis in range(3):
+        rate[at, axis] = np.interp(at, np.flatnonzero(there), rate[there, axis])
+    regression.rate[a.session] = rate
