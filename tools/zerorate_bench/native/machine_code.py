@@ -41,8 +41,10 @@ _ALWAYS = "static inline __attribute__((always_inline))"
 _WHOLE = '_Pragma("clang loop unroll(full)")'
 INLINED = ("step_step", "step_admit")
 UNROLLED = ("stillness_gather", "step_finish")
-# What one window in eight runs through, where a board has little heap: small before fast.
-SMALL = re.compile(r"^static (?=\w+ (?:bias|estimators|fit|histogram|recent)_\w+\()", re.MULTILINE)
+# What runs once a segment, where a board has little heap: small before fast.
+_SELDOM = re.compile(
+    r"^static (?=\w+ (?:bias|estimators|fit|histogram|recent)_\w+\()", re.MULTILINE
+)
 # ARMv6-M cannot divide: most quotients of the kernels are short, and this is short with them
 _SHORT_QUOTIENT = """\
 static __attribute__((noinline)) uint32_t quotient(uint32_t a, uint32_t b) {
@@ -154,7 +156,7 @@ def _hinted(text: str, small: bool) -> str:
     for name in UNROLLED:
         body = text.partition(f" {name}(")[2].partition("\n}\n")[0]
         text = text.replace(body, body.replace("    while ", f"    {_WHOLE} while "))
-    return SMALL.sub("static __attribute__((minsize)) ", text) if small else text
+    return _SELDOM.sub("static __attribute__((minsize)) ", text) if small else text
 
 
 def _linked(folder: Path, text: str, how: Processor, base: int, aims: tuple[str, ...]) -> bytes:
