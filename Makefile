@@ -44,12 +44,27 @@ sweep: $(VENV)/.dev  ## SWEEP random sensors and settings: does anything leave 3
 day: $(VENV)/.dev  ## examples/main.py for a simulated day: 200 resets, 200 times pulled out
 	$(BIN)/python -m host_tests.boards.day
 
-attacks: $(VENV)/.dev  ## every attack of docs/faults.md, with how many succeeded
-	$(BIN)/python -m host_tests.attacks
+ATTACK = ZERORATE_FUZZ=200 $(BIN)/python -m pytest -q -p no:cacheprovider
+attacks: $(VENV)/.dev  ## every attack of docs/faults.md, until one succeeds
+	$(BIN)/zerorate bench faults
+	$(ATTACK) host_tests/firmware -k 'test_store or test_places'
+	$(BIN)/python -m host_tests.turned_words --on x86 --on armhf
+	$(ATTACK) host_tests/tools -k 'test_model or test_atomic or test_drafts or test_growing'
+	$(ATTACK) host_tests/hostile -k any
+	$(BIN)/python -m host_tests.hostile.many_logs
+	$(BIN)/python -m host_tests.hostile.odd_commands
+	$(ATTACK) -s host_tests/hostile/test_bombs.py
+	$(BIN)/python -m host_tests.tools.killed_writers
+	$(BIN)/python -m host_tests.tools.killed_recorders
+	$(ATTACK) host_tests/report/test_page.py host_tests/fleet/test_population.py -k name
+	$(BIN)/python -m host_tests.firmware.sweep
+	$(BIN)/python -m host_tests.service.restarts
+	$(ATTACK) host_tests/service -k 'not restarts'
+	$(BIN)/python -m host_tests.boards.day
 
 MUTANTS ?= 25
-mutants: $(VENV)/.dev  ## which share of MUTANTS mutants of each area the tests kill
-	$(BIN)/python -m host_tests.mutants --each $(MUTANTS)
+mutants: $(VENV)/.dev  ## which of MUTANTS mutants of FILES the tests in TESTS kill
+	$(BIN)/python -m host_tests.mutants $(FILES) --tests $(TESTS) --each $(MUTANTS)
 
 layout: $(VENV)/.dev  ## write the constants of tools/zerorate_tools/layout where they are used
 	$(BIN)/python -m host_tests.layout

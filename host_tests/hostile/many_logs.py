@@ -1,4 +1,4 @@
-"""Damaged logs by the hundred thousand: `python -m host_tests.attacks logs` or, of one format,
+"""Damaged logs by the hundred thousand.
 
     python -m host_tests.hostile.many_logs [FORMAT...] [--times N] [--seed N]
 

@@ -9,7 +9,6 @@ import pytest
 from packaging.requirements import Requirement
 from vulture import Vulture
 
-from ..mutants import AREAS, apart, area_of, files_of
 from .readability import LEAST_READING_EASE, MOST_WORDS_A_SENTENCE, pages, readability
 
 if sys.version_info >= (3, 11):
@@ -173,20 +172,6 @@ def test_every_function_and_class_is_used(repository):
     }
     assert {n: where for n, where in unused.items() if n not in CALLED_BY_OTHERS} == {}
     assert unused, "it finds nothing at all"
-
-
-def test_every_file_belongs_to_one_area_or_says_why_it_has_no_mutants(repository):
-    paths = [p for f in ("firmware", "drivers", "tools") for p in (repository / f).rglob("*.py")]
-    files = [path.relative_to(repository).as_posix() for path in paths]
-    assert [file for file in files if not (area_of(file) or apart(file))] == []
-    folders = [folder for folders, _ in AREAS.values() for folder in folders]
-    assert len(folders) == len(set(folders)), "a folder belongs to two areas"
-
-
-@pytest.mark.parametrize("area", AREAS)
-def test_an_area_has_files_and_its_tests_are_there(repository, area):
-    tests = [repository / "host_tests" / test.partition("::")[0] for test in AREAS[area][1]]
-    assert files_of(area) and [str(test) for test in tests if not test.exists()] == []
 
 
 def pins(path):
