@@ -3,8 +3,9 @@
 from contextlib import nullcontext
 
 import pytest
-from zerorate_bench.fleet import write_devices
 from zerorate_tools.fleet import devices_of, fleet, whole_fleet
+
+from host_tests.golden.fleets import write_devices
 
 DEVICES = 12
 

@@ -10,7 +10,6 @@ from unittest import mock
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
-from zerorate_bench.fleet import write_devices
 from zerorate_tools.fleet import Fleet, devices_of, fleet, plots, whole_fleet
 from zerorate_tools.fleet.fleet_in_words import in_words, table_of
 from zerorate_tools.fleet.job import block_means, error_mdps
@@ -18,8 +17,9 @@ from zerorate_tools.fleet.part import curve_effects, part_of, step_effects
 from zerorate_tools.fleet.population import curve_of
 from zerorate_tools.fleet.prior import _summary, moving_from, prior_json, prior_model
 from zerorate_tools.loop.read.sessions import Session
-from zerorate_tools.recordings import Recording, Scales
+from zerorate_tools.recordings import Recording, Scales, write_recording
 from zerorate_tools.report.page import plain
+from zerorate_tools.simulate import simulate
 
 _STEP = {"effect": "thermal-lag", "verdict": "of the part", "devices": 3, "of_devices": 7,
          "share_ci95": [0.12, 0.77]}  # fmt: skip
@@ -38,6 +38,41 @@ _TOLD_ELSE = {
 }
 _TOLD_NONE = {"job": "close", "effects": [], "steps": [], "prior": None, "hours": 2000.0,
                   "failures": _LEFT_OUT[:10]}  # fmt: skip
+
+
+def write_devices(folder, minutes, numbers):
+    """Write `device=NUMBER/session-1.parquet` for each: a warm-up by 12 degC, at rest."""
+    for number in numbers:
+        home = folder / f"device={number:05d}"
+        home.mkdir(parents=True)
+        recording, _ = simulate(_warming(number, minutes))
+        write_recording(recording, home / "session-1.parquet")
+
+
+def _warming(number, minutes):
+    """Device `number` of the part, as `zerorate simulate` takes it. Typical of an MPU-6050: devices
+    differ in level by far more than in how they follow temperature."""
+    rng = np.random.default_rng(number)
+
+    def own(mean, deviation):
+        return (np.array(mean) + deviation * rng.standard_normal(3)).tolist()
+
+    start = float(rng.uniform(20, 26))
+    return {
+        "name": "session-1",
+        "seed": number,
+        "sensor": {"odr_hz": 25.0, "gyro_noise_dps": 0.05, "gyro_noise_at_hz": 100.0},
+        "bias": {
+            "b0": own((0.4, -0.9, 0.2), 1.0),
+            "b1": own((0.025, -0.018, 0.012), 0.006),
+            "b2": own((3e-4, -2e-4, 1e-4), 5e-5),
+        },
+        "noise": {"bias_instability_dps": 0.002},
+        "every_session": {
+            "start_degc": start,
+            "temperature": [{"to": start + 12.0, "tau_s": 60.0, "minutes": minutes}],
+        },
+    }
 
 
 def fleet_of_ten():

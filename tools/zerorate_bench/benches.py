@@ -90,10 +90,6 @@ _PROCESSES = {"--processes": _number(2, "at once")}
 BENCHES = {
     "accuracy": Bench("the bias error, beside other filters'", "accuracy", _QUICK),
     "boards": Bench("memory, time and numbers on an emulated Pico", "boards.measuring"),
-    "compare": Bench(
-        "what `compare` says of real recordings; exit code 1 if the truth contradicts it",
-        *("compared", _RECORDINGS, True),
-    ),
     "cost": Bench("instructions, heap, sizes and replay speed", "cost_report", _QUICK),
     "deceived": Bench(
         *("how often it is certain of a wrong bias when turns look like one", "deceived"),
@@ -103,15 +99,6 @@ BENCHES = {
         "every fault of a bus and every cut of a write; exit code 1 if one goes unnoticed",
         "faults",
         judged=True,
-    ),
-    "fleet": Bench(
-        *("many devices at once, and what a prior gains", "fleet"),
-        {
-            "--devices": {
-                **{"type": int, "nargs": "+", "metavar": "N", "default": (100, 500, 2000)},
-                "help": "sizes of the fleet (100 500 2000)",
-            }
-        },
     ),
     "heading": Bench(
         "heading lost in motion, without and with the matrix of `close`", "heading", _FOLDERS
@@ -129,13 +116,6 @@ BENCHES = {
         *("logs of other tools: right or refused; exit code 1 if one is wrong", "foreign_imports"),
         {"--only": {"metavar": "TEXT", "default": "", "help": "logs whose row holds it"}},
         judged=True,
-    ),
-    "import-size": Bench(
-        *("time and memory to import a huge CSV", "import_size"),
-        {
-            "--gb": _number(1.0, "its size"),
-            "--folder": {"type": Path, "metavar": "DIR", "help": "with room for 2.5 times that"},
-        },
     ),
     "loop": Bench(
         *("what `close` finds, and what it finds wrongly", "loop.trials"),
