@@ -46,7 +46,7 @@ day: $(VENV)/.dev  ## examples/main.py for a simulated day: 200 resets, 200 time
 
 ATTACK = ZERORATE_FUZZ=200 $(BIN)/python -m pytest -q -p no:cacheprovider
 attacks: $(VENV)/.dev  ## every attack of docs/faults.md, until one succeeds
-	$(BIN)/zerorate bench faults
+	$(ATTACK) host_tests/drivers/test_faults.py
 	$(ATTACK) host_tests/firmware -k 'test_store or test_places'
 	$(BIN)/python -m host_tests.turned_words --on x86 --on armhf
 	$(ATTACK) host_tests/tools -k 'test_model or test_atomic or test_drafts or test_growing'

@@ -13,9 +13,10 @@ from pathlib import Path
 from unittest.mock import patch
 
 from zerorate import checked
-from zerorate_bench.service import World
 from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050
 from zerorate_i2c.mpu6050 import MPU6050
+
+from host_tests.service.faulty_day import World
 
 PROGRAM = Path(__file__).resolve().parents[2] / "examples" / "main.py"
 LEARNING_S = 60.0

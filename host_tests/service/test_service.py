@@ -12,7 +12,6 @@ import urllib.request
 import numpy as np
 import pytest
 from zerorate.storage.places import FileStorage
-from zerorate_bench.service import run
 from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050, Physical
 from zerorate_i2c.clock import ticks_us
 from zerorate_i2c.fifo import EMPTY, Fifo
@@ -22,6 +21,8 @@ from zerorate_tools.importers import read_foreign
 from zerorate_tools.layout import AXIS, axis_at
 from zerorate_tools.service import Datagrams, Lines, Metrics, Service, System, UnixSocket
 from zerorate_tools.service.serve import notify
+
+from host_tests.service.faulty_day import run
 
 BIAS_DPS = (0.31, -0.19, 0.08)
 

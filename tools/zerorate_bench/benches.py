@@ -95,11 +95,6 @@ BENCHES = {
         *("how often it is certain of a wrong bias when turns look like one", "deceived"),
         {"--seeds": _number(50, "runs of each world")},
     ),
-    "faults": Bench(
-        "every fault of a bus and every cut of a write; exit code 1 if one goes unnoticed",
-        "faults",
-        judged=True,
-    ),
     "heading": Bench(
         "heading lost in motion, without and with the matrix of `close`", "heading", _FOLDERS
     ),
@@ -137,10 +132,6 @@ BENCHES = {
     "real": Bench("`close` on real recordings, each alone", "loop.real", _RECORDINGS),
     "real-motion": Bench(
         "the bias at the end of real motion, beside other filters'", "real_motion", _FOLDERS
-    ),
-    "service": Bench(
-        *("`zerorate run` under faults, kills, full disks", "service"),
-        {"--hours": _number(24.0, "simulated"), "--faults": _number(1000, "how many")},
     ),
     "singles": Bench(
         "`close` on one or two simulated recordings: does it make anything worse?",

@@ -242,21 +242,6 @@ def _strike(kind: str, luck: random.Random, chip: FakeMPU6050, bus: FakeI2C, dis
         raise Killed
 
 
-def in_markdown(found: dict[str, Any]) -> str:
-    """A few lines for a terminal."""
-    faults = ", ".join(f"{count} {kind}" for kind, count in sorted(found["faults"].items()))
-    return (
-        f"{found['hours']:g} simulated hours, {sum(found['faults'].values())} faults: {faults}\n"
-        f"down {found['downs']} times, {found['down_s']:,.0f} s together, "
-        f"{found['unexplained_downs']} times without a fault; besides, "
-        f"{max(0, found['samples_due'] - found['samples']):,} of {found['samples_due']:,} samples "
-        "are missing\n"
-        f"bias at rest, from {_SETTLE_S:.0f} s on and 20 s after it was down: "
-        f"{found['rms_mdps']:.1f} mdps rms, worst axis and moment {found['worst_mdps']:.1f} mdps\n"
-        f"worst line of the first 20 s after it was down: "
-        f"{found['worst_soon_after_down_mdps']:.1f} mdps\n"
-        f"first line after each of {found['kills']} kills: in the middle "
-        f"{found['first_line_after_kill_median_mdps']:.1f} mdps wrong, at most "
-        f"{found['first_line_after_kill_mdps']:.1f}; "
-        f"{found['refused_writes']} writes refused by a full disk\n"
-    )
+if __name__ == "__main__":
+    for name, value in run().items():
+        print(f"{name}: {value}")
