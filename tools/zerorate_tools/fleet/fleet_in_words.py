@@ -86,22 +86,13 @@ _FAILURES, _NAMES = 10, 8
 class Fleet:
     """What a run came to.
 
-    report: what fleet.json holds; resumed: devices that an earlier run had done; tasks, peak_bytes
-    busy_s and cpu_s: tasks of the cluster, the largest worker's memory and the seconds that all
-    tasks took, by the clock and by the processor;
-    start_s, work_s, conclude_s: seconds until the cluster stood, until the last device was done,
-    and from then on.
+    report: what fleet.json holds; resumed: devices that an earlier run had done; tasks: of the
+    cluster.
     """
 
     report: dict[str, Any] = field(default_factory=dict)
     resumed: int = 0
     tasks: int = 0
-    peak_bytes: int = 0
-    busy_s: float = 0.0
-    cpu_s: float = 0.0
-    start_s: float = 0.0
-    work_s: float = 0.0
-    conclude_s: float = 0.0
 
 
 def in_words(fleet: Fleet) -> str:

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import resource
-import sys
 import tempfile
-import time
 from collections.abc import Iterable, Sequence
 from contextlib import ExitStack
 from dataclasses import asdict, dataclass, field
@@ -65,22 +62,9 @@ class Job:
         return path
 
 
-def run_batch(job: Job, devices: Sequence[Device]) -> dict[str, Any]:
-    """Run the job on some devices: one task of the cluster.
-
-    Returns `devices` (see `run_device`), the worker's `peak_bytes` so far and the `seconds` and
-    `cpu_seconds` taken.
-    """
-    begun, cpu_begun = time.perf_counter(), time.process_time()
-    done = [run_device(job, device) for device in devices]
-    unit = 1 if sys.platform == "darwin" else 1024
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit
-    return {
-        "devices": done,
-        "peak_bytes": peak,
-        "seconds": time.perf_counter() - begun,
-        "cpu_seconds": time.process_time() - cpu_begun,
-    }
+def run_batch(job: Job, devices: Sequence[Device]) -> list[dict[str, Any]]:
+    """Run the job on some devices: one task of the cluster. See `run_device`."""
+    return [run_device(job, device) for device in devices]
 
 
 def run_device(job: Job, device: Device) -> dict[str, Any]:

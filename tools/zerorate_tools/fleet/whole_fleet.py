@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import time
 import uuid
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -70,36 +69,27 @@ def fleet(
     work = Job(job, options or {}, str(Path(model).resolve()) if model else None, own)
     devices = [Device(one.name, tuple(map(absolute, one.recordings))) for one in devices]
     wanted = {device.name: work.fingerprint(device) for device in devices}
-    begun = time.perf_counter()
     with cluster(scheduler, workers) as client:
-        start_s = time.perf_counter() - begun
         parts = Parts(folder)  # made now, so that a cluster that cannot be had leaves nothing
         done = parts.whole()
         left = [device for device in devices if wanted[device.name] not in done]
-        fleet = Fleet(resumed=len(devices) - len(left), start_s=start_s)
+        fleet = Fleet(resumed=len(devices) - len(left))
         advance(fleet.resumed)
         if left:
             compiled()  # here first, so that what there is to say of it is said once
         batches = in_batches(left, size_of(client), devices_per_task)
         fleet.tasks = len(batches)
         for batch, result in run_all(client, partial(run_batch, work), batches):
-            parts.add(_noted(fleet, result, batch, wanted))
+            parts.add(_noted(result, batch, wanted))
             advance(len(batch))
-        fleet.work_s = time.perf_counter() - begun - fleet.start_s
         fleet.report = _conclude(parts.results(wanted), work, folder, minutes, client)
-        fleet.conclude_s = time.perf_counter() - begun - fleet.start_s - fleet.work_s
     return fleet
 
 
-def _noted(
-    fleet: Fleet, result: Any, batch: Iterable[Device], wanted: dict[str, str]
-) -> list[dict[str, Any]]:
+def _noted(result: Any, batch: Iterable[Device], wanted: dict[str, str]) -> list[dict[str, Any]]:
     """The results of a batch; those of one whose worker died say that it did."""
     if not isinstance(result, BaseException):
-        fleet.peak_bytes = max(fleet.peak_bytes, result["peak_bytes"])
-        fleet.busy_s += result["seconds"]
-        fleet.cpu_s += result["cpu_seconds"]
-        return result["devices"]
+        return result
     why = one_line(result)
     if type(result).__name__ == "KilledWorker":
         why = "the worker died on it, again and again; out of memory?"
