@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 from array import array
+from functools import partial
 from io import FileIO
 from pathlib import Path
 from unittest import mock
@@ -20,9 +21,9 @@ from zerorate_i2c.linux import LinuxI2C
 from zerorate_i2c.mpu6050 import MPU6050
 from zerorate_tools import cli
 from zerorate_tools.boards import bus, fake_hand
-from zerorate_tools.boards.bus import record_bus, stream_bus
+from zerorate_tools.boards.bus import stream_bus
 from zerorate_tools.boards.fake_chip import FakeBus
-from zerorate_tools.boards.recorder import Recorder
+from zerorate_tools.boards.recorder import Recorder, recorded
 from zerorate_tools.boards.recording import record, stream
 from zerorate_tools.errors import InFile, ZerorateError
 from zerorate_tools.recordings import Recording, Scales, growing, read_recording
@@ -51,7 +52,8 @@ class Machine:
         self.out = folder / "run.parquet"
 
     def record(self, seconds=10, **options):
-        return record_bus(self.bus, self.out, seconds=seconds, time_source=self.clock, **options)
+        options |= {"seconds": seconds, "time_source": self.clock}
+        return recorded("I2C", self.out, None, partial(stream_bus, self.bus, **options))
 
     def columns(self):
         return read_recording(self.out).columns
@@ -296,8 +298,7 @@ def test_a_setting_no_part_can_take_is_one_line(tmp_path, monkeypatch):
 def test_a_number_is_a_bus_and_what_is_none_a_port(monkeypatch, name, bus):
     asked, refuse = [], mock.Mock(side_effect=OSError)
     monkeypatch.setattr("zerorate_i2c.linux.LinuxI2C", lambda of: asked.append(of) or refuse())
-    for verb in ("record_port", "stream_port"):
-        monkeypatch.setattr(f"zerorate_tools.boards.port.{verb}", refuse)
+    monkeypatch.setattr("zerorate_tools.boards.port.stream_port", refuse)
     for how in (record, stream):
         with pytest.raises(OSError):
             how(name, Path("run.csv"), seconds=3.0)

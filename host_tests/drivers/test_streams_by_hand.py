@@ -3,12 +3,13 @@
 import json
 import re
 from contextlib import nullcontext
+from functools import partial
 
 import numpy as np
 import pytest
 from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050
 from zerorate_i2c.mpu6050 import MPU6050
-from zerorate_tools.boards import port
+from zerorate_tools.boards import port, recorder
 from zerorate_tools.boards.connection import BoardError
 from zerorate_tools.boards.on_board.stream import Streamer, every
 from zerorate_tools.boards.port import (
@@ -206,7 +207,9 @@ def test_a_port_is_recorded_and_streamed_as_its_frames_say(board, monkeypatch, t
         return Recorder([append], 1e6 / scales.odr_hz)
 
     with pytest.raises(BoardError, match="are in .*run.csv") if ends else nullcontext():
-        found = port.record_port("port", out, setup="imu = 1", done=done)
+        found = recorder.recorded(
+            "port", out, None, partial(port.stream_port, "port", setup="imu = 1", done=done)
+        )
         assert (found.samples, found.lost, found.part) == (len(read_recording(out)), 0, "MPU-6050")
     with pytest.raises(BoardError) if ends else nullcontext():
         port.stream_port("port", take, done=done, odr_hz=50.0)

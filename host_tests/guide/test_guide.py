@@ -1,11 +1,12 @@
 """`record --guide`: what it asks for, when it ends, and what the recording it made then gives."""
 
 import io
+from functools import partial
 
 import numpy as np
 import pytest
-from zerorate_tools.boards import fake_hand
-from zerorate_tools.boards.bus import record_bus
+from zerorate_tools.boards import fake_hand, recorder
+from zerorate_tools.boards.bus import stream_bus
 from zerorate_tools.cli import main
 from zerorate_tools.closing import close
 from zerorate_tools.guide import (
@@ -82,13 +83,8 @@ def test_a_guide_beside_the_recording_sees_what_one_that_waits_sees(tmp_path):
     for waits in (True, False):
         bus, clock, _ = fake_hand.in_hand()
         with Guide(Silent(), waits=waits) as guide:
-            record_bus(
-                *(bus, tmp_path / f"{waits}.parquet"),
-                seconds=30,
-                time_source=clock,
-                heard=guide.heard,
-                done=guide.done,
-            )
+            streamed = partial(stream_bus, bus, seconds=30, time_source=clock, done=guide.done)
+            recorder.recorded("I2C", tmp_path / f"{waits}.parquet", guide.heard, streamed)
             seen[waits] = guide.known.seconds
     assert seen[True] == pytest.approx(30, abs=3) and 0 < seen[False] <= 30
 

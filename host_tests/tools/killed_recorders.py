@@ -25,7 +25,7 @@ from pathlib import Path
 from zerorate_fakes import FakeClock, FakeI2C, FakeMPU6050
 from zerorate_tools import cli
 from zerorate_tools.boards import port, recording
-from zerorate_tools.boards.bus import record_bus
+from zerorate_tools.boards.bus import stream_bus
 from zerorate_tools.boards.port import SAMPLE, SCALES, encode
 from zerorate_tools.recordings import read_recording, recover, write_recording
 
@@ -73,7 +73,7 @@ class Wire(FakeI2C):
 
 
 class Board:
-    """What mpremote gives of a board that streams, as far as record_port looks at it."""
+    """What mpremote gives of a board that streams, as far as stream_port looks at it."""
 
     def __init__(self, chip):
         self.serial, self.in_waiting = self, 64
@@ -107,8 +107,8 @@ def on_bus(chip, hz):
     clock = FakeClock(fake)
     wire = Wire(fake, clock=clock)
     wire.chip = chip
-    recording._record_linux = lambda bus, out, **options: record_bus(
-        wire, out, source=bus, time_source=clock, **options
+    recording.stream = lambda bus, take, **options: stream_bus(
+        wire, take, source=bus, time_source=clock, **options
     )
     return ["/dev/i2c-1", "--hz", str(hz)]
 

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Callable
-from functools import partial
-from pathlib import Path
 from typing import Any
 
 from zerorate_i2c import clock
@@ -13,23 +11,12 @@ from zerorate_i2c.fifo import EMPTY, Fifo
 from zerorate_i2c.mpu6050 import FRESH, MPU6050, RESTARTED, VERIFIED
 
 from ..ending import noted_signals
-from .recorder import Heard, Recorded, Recorder, Take, recorded, scales_of
+from .recorder import Recorder, Take, scales_of
 
 _POLLS_A_PERIOD = 3
 _PATIENCE_S = 5.0
 _VERIFY_S = 0.5
 _SCALES = ("part", "odr_hz", "gyro_lsb_per_dps", "accel_lsb_per_g", "temp_lsb_per_degc")
-
-
-def record_bus(
-    i2c: Any, out: Path, *, source: str = "I2C", heard: Heard | None = None, **options: Any
-) -> Recorded:
-    """Record from the chip on i2c into out: see stream_bus, of which options are, and Heard.
-
-    Raises OSError where no chip answers, InFile without room, and ZerorateError for a bus that
-    fails on its way; out then holds what had been verified.
-    """
-    return recorded(source, out, heard, partial(stream_bus, i2c, source=source, **options))
 
 
 def stream_bus(

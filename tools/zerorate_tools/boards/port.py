@@ -8,9 +8,7 @@ import sys
 import time
 from binascii import crc32
 from collections.abc import Callable
-from functools import partial
 from importlib.resources import files
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..ending import noted_signals
@@ -18,7 +16,7 @@ from ..errors import ZerorateError
 from ..recordings import Scales
 from ..recordings.scales import scales_from_text
 from .connection import BoardError, connected, said
-from .recorder import COLUMNS, Heard, Recorded, Recorder, Take, recorded, scales_of
+from .recorder import COLUMNS, Recorder, Take, scales_of
 
 if TYPE_CHECKING:
     from serial import Serial
@@ -38,14 +36,6 @@ _CRC = 4
 _SAMPLE = struct.Struct("<HIB")
 _WORDS = struct.Struct(">7h")
 SAMPLE_BYTES = _SAMPLE.size + _WORDS.size
-
-
-def record_port(port: str, out: Path, *, heard: Heard | None = None, **options: Any) -> Recorded:
-    """Record from the board at port into out: see stream_port, of which options are, and Heard.
-
-    Raises BoardError as there, when what had been verified is kept, and InFile without room.
-    """
-    return recorded(port, out, heard, partial(stream_port, port, **options))
 
 
 def stream_port(

@@ -123,7 +123,7 @@ class WatchOptions:
 
     seconds: end after so long; once: end with what is there; every_s: between two looks (default
     0.5 on a terminal, 2 in a pipe); settings, model: as of Live; setup: as of
-    record_port; own: show what the board's own program prints, and leave it running.
+    stream_port; own: show what the board's own program prints, and leave it running.
     """
 
     seconds: float | None = None
