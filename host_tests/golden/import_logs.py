@@ -3,7 +3,6 @@
 from pathlib import Path
 
 import numpy as np
-from zerorate_tools.errors import ZerorateError
 from zerorate_tools.importers import Options, importing
 from zerorate_tools.importers.columns import plan
 from zerorate_tools.importers.columns.mapping import Mapped, parsed_mapping
@@ -13,8 +12,9 @@ from zerorate_tools.importers.tables.table import Chunk, Table
 from zerorate_tools.recordings.reading import whole
 from zerorate_tools.recordings.recording import ACCEL, COLUMNS, GYRO
 
-from .import_corpus import told
-from .import_steps import PATH, attempt, mostly
+from .import_texts import attempt, mostly, told
+
+_PATH = Path("log.csv")
 
 _GYROS = ("g{}", "gyro_{} [rad/s]", "imu1.raw_gyro_{}", "imu2 gyro {} calibrated", "rot {} (deg/s)",
           "angular_velocity.{}", "{}", "w[{}]")  # fmt: skip
@@ -81,18 +81,9 @@ def plans():
         of = mostly(luck, (), *said_of)
         mapping = [Mapped(of[0], mostly(luck, "", "-") + str(names[0]), of[1])] if of else []
         how = table, mapping, mostly(luck, 0, 1, 2), luck.random() < 0.2
-        try:
-            said.append(_planned(*how))
-        except ZerorateError as error:
-            said.append(" ".join(["no:", *told(str(error))]))
-    return {"plans": said, "mappings": [_mapping(words) for words in _MAPPINGS.split()]}
-
-
-def _mapping(words):
-    try:
-        return str(parsed_mapping(words))
-    except ValueError as error:
-        return " ".join(["no:", *told(str(error))])
+        said.append(attempt(_planned, *how))
+    mappings = [attempt(parsed_mapping, words) for words in _MAPPINGS.split()]
+    return {"plans": said, "mappings": mappings}
 
 
 def _sensors(luck, rows):
@@ -134,11 +125,12 @@ def _log(luck):
 
 def _imported(table, how):
     """Of a log: how its columns change from row to row, times, scales and the report."""
-    (one,) = importing._ready([importing._gathered(table, PATH, how, None)])
-    columns = whole(one.batches, one.names, PATH)
+    (one,) = importing._ready([importing._gathered(table, _PATH, how, None)])
+    columns = whole(one.batches, one.names, _PATH)
     sums = [f"{name} {np.abs(np.diff(v)).mean():.5g}" for name, v in columns.items()]
     spans = columns["t_us"][[0, -1]].tolist()
-    return " ".join(map(str, (*sums, *spans, one.scales.to_json(), *one.report.lines())))
+    said = " ".join(map(str, (*sums, *spans, one.scales.to_json(), *one.report.lines())))
+    return " ".join(told(said))
 
 
 def logs():

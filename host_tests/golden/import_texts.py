@@ -2,6 +2,7 @@
 
 import gzip
 import json
+import re
 from functools import reduce
 from operator import xor
 from pathlib import Path
@@ -15,9 +16,7 @@ from zerorate_tools.importers.logs import json_file
 from zerorate_tools.importers.tables import checked_lines
 from zerorate_tools.importers.tables.delimited import delimited
 
-from .import_corpus import told
-from .import_steps import mostly
-
+_TOLD = re.compile(r"--[a-z-]+(?: [^\s,;()]+)?|-?\d+\.?\d*")
 _NAMES = ["t_s", "gx_dps", "gy_dps", "gz_dps", "temp_c"]
 _HEADS = (
     *([_NAMES], [_NAMES], [_NAMES], []),
@@ -33,6 +32,24 @@ _TIMES = (
     *("{:.3f}", "12:00:{:06.3f}", "2026-05-01T23:59:{:06.3f}+01:00", "12:00:{:02.0f} AM"),
     *("1.5.2026 11:59:{:02.0f} pm", "12:00:{:02.0f}:250", "2026/05/01 12:00:{:02.0f},5"),
 )
+
+
+def mostly(luck, usual, *others):
+    """The usual value, or now and then one of the others."""
+    return usual if luck.random() < 0.8 else others[luck.integers(len(others))]
+
+
+def told(said):
+    """Figures, and what a user is told to type: the words about them are free."""
+    return _TOLD.findall(re.sub(r"/\S+", "", said))
+
+
+def attempt(step, *of):
+    """What a step says, or why it refuses: figures and what to type."""
+    try:
+        return str(step(*of))
+    except (ZerorateError, ValueError) as error:
+        return " ".join(["no:", *told(str(error))])
 
 
 def _rows(luck, delimiter, number):
@@ -77,13 +94,6 @@ def _read(reader, path):
     return ", ".join(map(str, [*sums, *words, place, *about]))
 
 
-def _as_said(reader, path):
-    try:
-        return _read(reader, path)
-    except ZerorateError as error:
-        return " ".join(["no:", *told(str(error))])
-
-
 def texts():
     """What is read of texts."""
     luck, said = np.random.default_rng(6), []
@@ -91,7 +101,7 @@ def texts():
         path = Path(folder, "in.csv")
         for _ in range(400):
             path.write_bytes(_text(luck).encode(mostly(luck, "utf-8", "utf-8-sig", "utf-16")))
-            said.append(_as_said(delimited, path))
+            said.append(attempt(_read, delimited, path))
     return {"texts": said}
 
 
@@ -130,7 +140,7 @@ def records():
         path = Path(folder, "in.json")
         for _ in range(200):
             path.write_text(_json(luck))
-            said.append(_as_said(json_file.read, path))
+            said.append(attempt(_read, json_file.read, path))
     return {"records": said}
 
 
@@ -154,9 +164,15 @@ def checked():
         for _ in range(60):
             path.write_text(mostly(luck, "\n", "\r\n").join([*_checked(luck), ""]))
             said.append(str(checked_lines.has_checked_lines(path)))
-            said.append(_as_said(checked_lines.checked_lines, path))
+            said.append(attempt(_read, checked_lines.checked_lines, path))
             said += checked_lines.checked_lines(path).mapping
     return {"checked": said}
+
+
+def _cut(path, rows, folder):
+    """Name, lines and bytes of each part, a line each."""
+    held = [(part.name, part.read_bytes()) for part in cut(path, rows, folder)]
+    return "\n".join(f"{name} {len(text.splitlines())} {len(text)}" for name, text in held)
 
 
 def cuts():
@@ -168,12 +184,7 @@ def cuts():
             text = (_text(luck) + mostly(luck, "", _text(luck))).encode()
             path.write_bytes(gzip.compress(text) if path.suffix == ".gz" else text)
             rows = luck.choice([1, 2, 5, 14, 20, 31, 40], mostly(luck, 1, 2)).tolist()
-            try:
-                for part in cut(path, rows, Path(folder, f"parts{number}")):
-                    held = part.read_bytes()
-                    said.append(f"{part.name} {len(held.splitlines())} {len(held)}")
-            except ZerorateError as error:
-                said.append(" ".join(["no:", *told(str(error).replace(folder, ""))]))
+            said += attempt(_cut, path, rows, Path(folder, f"parts{number}")).split("\n")
     return {"cuts": said}
 
 

@@ -20,8 +20,9 @@ from zerorate_tools.loop.read.ticks import read_ticks, tick_seconds
 from zerorate_tools.recordings import Recording, turning, write_recording
 from zerorate_tools.simulate import reference, simulate_sessions
 
-from . import arithmetic, exported, fleets, moved, reported, resting, served, shown, watched
-from .imported import IMPORTED
+from . import arithmetic, fleets, moved, reported, resting, served, shown, watched
+from .import_logs import LOGS
+from .import_texts import TEXTS
 from .kernels import KERNELS
 
 FILE = Path(__file__).with_name("known.json")
@@ -299,15 +300,14 @@ KNOWN = {
     "moved together": moved_together,
     "turned": turned,
     "compared": compared,
-    "demonstrated": lambda: reported.gathered_plain(shown.demonstrated()),
     "fleet of ten": fleet_of_ten,
     "parts of a fleet": lambda: reported.gathered_plain(fleets.parts_of_a_fleet()),
     "steps found": reported.steps_found,
     "searched two": reported.searched_two,
     "searched one": reported.searched_one,
-    **IMPORTED,
+    **TEXTS,
+    **LOGS,
     "served": served.served,
-    "exported": exported.exported,
     "watched": lambda: reported.gathered(watched.watched()),
 }
 

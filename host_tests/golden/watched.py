@@ -1,7 +1,7 @@
 """What is shown of a sensor while it is watched or guided: figures and words."""
 
 import io
-from contextlib import nullcontext, redirect_stdout
+from contextlib import redirect_stdout
 from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 from unittest import mock
@@ -12,8 +12,8 @@ from zerorate_tools import guide
 from zerorate_tools.boards.recorder import COLUMNS
 from zerorate_tools.loop.motion.device import Shown
 from zerorate_tools.simulate import simulate
-from zerorate_tools.watch import live, watching
-from zerorate_tools.watch.live import Live, OwnOutput
+from zerorate_tools.watch import watching
+from zerorate_tools.watch.live import Live
 from zerorate_tools.watch.screen import Area, Lines, WatchOptions, sparkline
 
 _WARM = {
@@ -22,11 +22,6 @@ _WARM = {
         {"kind": "rest", "s": 30}, {"kind": "hand", "s": 10},
     ]},
 }  # fmt: skip
-_OWN = (
-    b"before +1.000 -2.000 +0.500  after +0.100 -0.200 +0.000\r\nat rest\r\ngx: bias +0.9 dps fr"
-    b"om another temperature, +-0.012 dps\ngy: no bias yet\nodd\n\n"
-    b"before 0.0 0.0 0.0  after 1.0 2.0 3.0\n"
-)
 
 
 class _Clock:
@@ -91,7 +86,6 @@ def _watched():
     yield "screen", _drawn(Area, live, ["a note"])
     yield "followed", _followed(recording.scales, [pieces[1], None, pieces[2], None, pieces[3]])
     yield "slow", _followed(replace(recording.scales, odr_hz=2.0), [pieces[1], None, pieces[2]])
-    yield "board", _on_board(recording.scales, pieces[2])
 
 
 def _followed(scales, batches):
@@ -117,58 +111,6 @@ def _followed(scales, batches):
         once.run()
         once.look()
     return looked
-
-
-def _on_board(scales, columns):
-    """When samples of a board are handed on and shown."""
-    looked, clock = [], _Clock()
-    shown = SimpleNamespace(show=lambda live, notes: looked.append([clock.now, live.samples]))
-    with mock.patch.object(watching, "time", SimpleNamespace(monotonic=clock)):
-        watcher = watching.Watcher("port", scales, WatchOptions(every_s=1.0), shown)
-        for row in zip(*(columns[name].tolist() for name in COLUMNS)):
-            clock.now += 0.1
-            watcher.add(row[0], row[1:])
-    return looked
-
-
-def _own():
-    """A program's lines in pieces."""
-    output = OwnOutput("port")
-    for at in range(0, len(_OWN), 40):
-        output.feed(_OWN[at : at + 40])
-        rates = [output.rate_dps, output.left_dps, output.bias_dps, output.quality_dps]
-        counts = [output.samples, output.lines, output.learning(), output.headline()]
-        rates += [*output.history]
-        said = _printed(lambda: Lines().show(output, []))[0].partition(" s")[2]
-        yield [*np.nan_to_num(rates).tolist(), output.source, *counts, said]
-
-
-def _listened():
-    """When a program's lines are read, shown and noted, and after what it ends."""
-    for options, came in (
-        (WatchOptions(seconds=30.0, every_s=0.5), []),
-        (WatchOptions(once=True), []),
-        (WatchOptions(), ["a signal"]),
-    ):
-        clock, looked = _Clock(), []
-        said = iter([b"", b"", *[b"a line\n"] * 14, _OWN[:60], _OWN[60:], *[b""] * 99])
-
-        def read(size, clock=clock, said=said):
-            clock.now += 1.0
-            return next(said)
-
-        shown = SimpleNamespace(
-            show=lambda own, notes, c=clock, of=looked: of.append([c.now, own.lines, *notes])
-        )
-        fakes = {
-            "time": SimpleNamespace(monotonic=clock),
-            "listening": lambda port, of=read: nullcontext(SimpleNamespace(read=of, in_waiting=0)),
-            "screen": lambda plain, of=shown: nullcontext(of),
-            "noted_signals": lambda of=came: nullcontext(of),
-        }
-        with mock.patch.multiple(live, **fakes):
-            heard = live.watch_own("port", options)
-        yield [looked, heard and heard.samples]
 
 
 class _Fitted:
@@ -221,26 +163,6 @@ def _guided():
         ]  # fmt: skip
 
 
-def _looks():
-    """When a guide looks at the batches that it is given, and what it hands on."""
-    shown, looked, asked = [], [], []
-    guiding = guide.Guide(SimpleNamespace(show=shown.append), waits=True)
-    asked.append(guiding.done(0.0))
-    hear = guiding.heard(SimpleNamespace(gyro_lsb_per_dps=1.0))
-    with guiding, mock.patch.object(guide.KnownSoFar, "look", lambda _, of: looked.append(len(of))):
-        for number in range(9):
-            hear({"t_us": np.array([0, 400_000, 900_000]) + number * 1_000_000})
-            asked.append([guiding.done(0.0), len(looked), len(shown)])
-    return [asked, looked]
-
-
 def watched():
     """All that is watched and guided."""
-    found = dict(_watched())
-    return {
-        **found,
-        "own": [*_own()],
-        "listened": [*_listened()],
-        "guided": [*_guided()],
-        "looks": _looks(),
-    }
+    return {**dict(_watched()), "guided": [*_guided()]}

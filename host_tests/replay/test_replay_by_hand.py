@@ -1,8 +1,12 @@
 """A replay in this process: what a MicroPython is given and gives back, drawings, kept states."""
 
+import io
+import runpy
 import sys
-from contextlib import nullcontext
+from contextlib import nullcontext, redirect_stdout
 from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from types import SimpleNamespace
 
 import numpy as np
@@ -37,8 +41,6 @@ from zerorate_tools.replay.samples import frames_in_batches
 from zerorate_tools.replay.state_in_words import words_of_file
 from zerorate_tools.simulate import simulate
 
-from ..golden.shown import InThisProcess
-
 DEVICE = {
     "sensor": {"odr_hz": 25.0},
     "bias": {"b0": [1.5, -2.0, 0.5], "b1": 0.02},
@@ -58,7 +60,7 @@ SLOTS = [
 ]
 
 
-class Here(InThisProcess):
+class Here:
     """A Runtime that runs a script in this process, and loses so many samples."""
 
     name = "here"
@@ -66,12 +68,20 @@ class Here(InThisProcess):
     def __init__(self, lost=0):
         self.lost = lost
 
-    def run(self, script, arguments, **how):
-        assert [(m / "zerorate" / "corrector.py").is_file() for m in how["modules"]] == [True]
-        ran = super().run(script, arguments, **how)
-        out = ran.files["out.bin"]
-        ran.files["out.bin"] = out[: len(out) - 68 * self.lost]
-        return ran
+    def run(self, script, arguments, *, modules, files_in, **how):
+        assert [(m / "zerorate" / "corrector.py").is_file() for m in modules] == [True]
+        with TemporaryDirectory() as folder, pytest.MonkeyPatch.context() as patch:
+            patch.chdir(folder)
+            for name, content in files_in.items():
+                data = content if isinstance(content, bytes) else content.read_bytes()
+                Path(name).write_bytes(data)
+            patch.setattr(sys, "argv", [script.name, *map(str, arguments)])
+            with redirect_stdout(io.StringIO()) as said:
+                runpy.run_path(str(script))
+            files = {name: Path(name).read_bytes() for name in how["files_out"]}
+        out = files["out.bin"]
+        files["out.bin"] = out[: len(out) - 68 * self.lost]
+        return SimpleNamespace(files=files, stdout=said.getvalue())
 
 
 @pytest.fixture(scope="module")
