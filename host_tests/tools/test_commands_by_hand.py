@@ -9,7 +9,6 @@ from pathlib import Path
 from types import SimpleNamespace
 from unittest.mock import ANY, Mock, call
 
-import numpy as np
 import pytest
 from zerorate_tools import cli
 from zerorate_tools.errors import MissingRuntime, ZerorateError
@@ -31,72 +30,6 @@ def test_1_says_that_nothing_came(stands_in, words, function, nothing, capsys):
     stands_in(f"zerorate_tools.{function}", nothing)
     assert cli.main(words.split()) == 1
     assert words[:6] != "record" or "no sample came" in capsys.readouterr().out
-
-
-def test_allan_prints_mdps_of_each_length_and_the_lowest(stands_in, capsys):
-    rates = np.random.default_rng(1).normal(0, 1e-3, (50, 3))
-    stands_in("zerorate_tools.loop.read.still.still_stretch", (rates, 0.5))
-    assert cli.main(["allan", "run.parquet"]) == 0
-    first, _, *rows, floor = capsys.readouterr().out.splitlines()
-    numbers = np.array([row.split() for row in rows], float)
-    assert first == "the longest stretch at rest: 25.0 s" and numbers[0, 0] == 0.5
-    assert numbers[0, 1:] == pytest.approx(np.full(3, 1.0), abs=0.3)
-    assert [float(n) for n in floor.split()[1:]] == numbers[:, 1:].min(axis=0).tolist()
-
-
-def test_replay_prints_the_shares_of_verdicts_and_sources_and_what_explains_them(stands_in, capsys):
-    done = {"verdicts": {"still": 3, "moving": 1}, "sources": {"none": 4}, "explanation": "a\nb"}
-    stands_in("zerorate_tools.replay.replay", SimpleNamespace(samples=4, **done))
-    assert cli.main(["replay", "run.parquet", "--out", "o.parquet"]) == 0
-    assert capsys.readouterr().out.splitlines() == [
-        "o.parquet: 4 samples",
-        "  verdicts: still 3 (75.0%), moving 1 (25.0%)",
-        "  source of the bias: none 4 (100.0%)",
-        "  a",
-        "  b",
-    ]
-
-
-def test_import_prints_what_became_of_each_file(stands_in, capsys):
-    report = SimpleNamespace(lines=lambda: ["4 samples", "left aside: x"])
-    stands_in("zerorate_tools.importers.import_recording", report)
-    assert cli.main(["import", "s.py", "--out", "o.csv"]) == 0
-    assert capsys.readouterr().out == "o.csv\n  4 samples\n  left aside: x\n"
-
-
-def test_what_was_watched_is_drawn_where_that_is_asked(stands_in, capsys):
-    stands_in("zerorate_tools.watch.watching.watch", "live")
-    draw = stands_in("zerorate_tools.watch.screen.draw")
-    assert cli.main(["watch", "x.csv", "--plot", "p.png"]) == 0
-    assert draw.call_args == call("live", Path("p.png")) and capsys.readouterr().out == "p.png\n"
-
-
-def test_what_simulate_knows_is_listed(capsys):
-    assert cli.main(["simulate", "--list"]) == 0
-    assert "turntable" in capsys.readouterr().out.splitlines()
-    assert cli.main(["simulate", "--entries"]) == 0
-    assert "turn_on_dps" in capsys.readouterr().out
-
-
-@pytest.mark.parametrize(("words", "said"), [("", "in words\n"), ("--json", "{}\n")])
-def test_a_model_is_shown_in_words_or_as_json(stands_in, capsys, words, said):
-    read = stands_in("zerorate_tools.model.read_model", "model")
-    stands_in("zerorate_tools.model.to_json", "{}\n")
-    stands_in("zerorate_tools.model.model_in_words.in_words", "in words")
-    assert cli.main(["model", "show", "m.bin", *words.split()]) == 0
-    assert read.call_args == call(Path("m.bin")) and capsys.readouterr().out == said
-
-
-@pytest.mark.parametrize("in_motion", [False, True])
-def test_close_prints_what_it_found_at_rest_or_in_motion(stands_in, capsys, in_motion):
-    stands_in("zerorate_tools.closing.close", {"in_motion": 1} if in_motion else {})
-    stands_in("zerorate_tools.closing.motion_in_words", "in motion")
-    stands_in("zerorate_tools.loop.report.in_words.in_words", "the words")
-    stands_in("zerorate_tools.report.sentences.headline", "the headline")
-    stands_in("zerorate_tools.report.sentences.why_both", "why")
-    assert cli.main(["close", "a.csv", "--out", "o"]) == 0
-    words = ["in motion"] if in_motion else ["the headline.", "why", "the words"]
-    assert capsys.readouterr().out.splitlines() == [*words, "report: o/report.html"]
 
 
 def test_without_its_package_bench_says_what_to_install(monkeypatch, capsys):
@@ -165,13 +98,6 @@ def test_record_says_what_a_killed_one_left(stands_in, capsys):
 def test_record_needs_a_port_and_a_file_or_what_to_recover(words, capsys):
     assert cli.main(["record", *words.split()]) == 2
     assert "name " in capsys.readouterr().err
-
-
-def test_record_finishes_what_a_killed_one_left(stands_in, capsys):
-    recover = stands_in("zerorate_tools.recordings.recover", Path("run.parquet"))
-    assert cli.main(["record", "--recover", "x.partial.csv"]) == 0
-    assert recover.call_args == call(Path("x.partial.csv"), None)
-    assert capsys.readouterr().out == "run.parquet: 4 samples of x.partial.csv\n"
 
 
 # --- run ---
@@ -303,10 +229,3 @@ def test_interpreters_are_listed_with_how_to_get_those_missing(monkeypatch, caps
     said = dict(line.split(maxsplit=1) for line in capsys.readouterr().out.splitlines())
     assert said["x86"] == "missing: zerorate runtimes get x86"
     assert {said["wasm"], said["armhf"], said["x64"]} == {"ready"}
-
-
-def test_the_node_that_wasm_would_use_is_said(stands_in, capsys):
-    stands_in("zerorate_tools.runtimes.node.node_command", ["node", "-x"])
-    stands_in("zerorate_tools.runtimes.node.npm_command", ["npm"])
-    assert cli.main(["runtimes", "node"]) == 0
-    assert capsys.readouterr().out == "node -x\nnpm\n"

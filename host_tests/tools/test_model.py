@@ -26,9 +26,9 @@ from zerorate_tools.model import (
     to_json,
     write_model,
 )
-from zerorate_tools.model.effects import EFFECTS, is_free, table_of
+from zerorate_tools.model.effects import is_free, table_of
 from zerorate_tools.model.model import binding_of
-from zerorate_tools.model.model_in_words import basis_in_words, differences
+from zerorate_tools.model.model_in_words import differences
 from zerorate_tools.model.term import Term, evaluate
 from zerorate_tools.recordings import Scales
 
@@ -310,17 +310,6 @@ def test_a_term_is_what_its_fields_say(fields, expected):
     assert evaluate(term, of.__getitem__, 2.0)[: len(expected)] == pytest.approx(expected)
 
 
-def test_a_grid_of_times_or_widths_doubles_and_kinks_are_a_tenth_of_the_range_apart():
-    """So nothing between two values is far from both; a free curve and a rate need fewer."""
-    for row in EFFECTS:
-        for grid in (row.grids.get(name, ()) for name in ("lag_s", "width", "decay_s")):
-            alike = 2 if row.source in ("temp", "one") else 4 if "rate" in row.kind else 3
-            two_digits = [float(f"{grid[0] * alike**k:.2g}") for k in range(len(grid))]
-            assert list(grid) == two_digits, row.kind
-    (knots,) = (row.grids["knot"] for row in EFFECTS if "knot" in row.grids)
-    assert knots == pytest.approx(np.arange(0.15, 0.9, 0.1))
-
-
 @pytest.mark.parametrize("code", range(4))
 def test_a_range_is_known_by_its_scale_to_a_thousandth(code):
     gyro, accel = (131.0, 65.5, 32.8, 16.4)[code], 16384.0 / 2**code
@@ -334,39 +323,3 @@ def test_a_table_reaches_from_minus_one_to_one_and_is_free_unless_a_row_has_it()
     assert table_of(lambda v: 3 * v, 10, 18) == pytest.approx(np.linspace(-1, 1, 9))
     assert math.isnan(table_of(lambda v: 0 * v, 0, 1)[0])
     assert is_free(Term("load", 0, 1, table=TABLE)) and not is_free(Term("load", 0, 1))
-
-
-def test_a_slot_in_words_says_each_of_its_steps():
-    assert [basis_in_words(slot) for slot in (*EVERY, *FAST)] == [
-        "temp less 32.5 degC, to the power of 2",
-        "temp less 32.5 degC, its rate a second over 20 s",
-        "1, fading from power-on with 240 s",
-        "temp less 30 degC, through a table",
-        "vib less 0.2 g^2, what is above 0.4 g^2",
-        "acc_x less 0 g, backlash of 0.3 g",
-        "temp less 30 degC, to the power of 3, less itself lagged by 90 s",
-        "time less 0 s, the highest so far less itself, times (load less 0)",
-        "temp less 32.5 degC, where a play operator of width 3 degC stands",
-        "temp less 32.5 degC, where a play operator of width 3 degC stands, to the power of 2",
-        "temp less 32.5 degC, where a play operator of width 6 degC stands",
-        "rate_y less 0 dps",
-        "acc_z less 0 g, times (vdd_mv less 0)",
-        "load less 0, 700 s ago",
-        "vdd_mv less 0, what is above 5",
-        "load less 0, lagged by 30 s, fading from power-on with 60 s",
-    ]
-
-
-def test_each_difference_of_two_models_is_a_line():
-    one, other = (
-        build_model(SLOTS[:n], SCALES, binding=b) for n, b in ((1, BINDING), (2, Binding()))
-    )
-    assert differences(one, other)[:2] == [
-        "binding: chip_id: 104 and None",
-        "binding: gyro_range: 0 and None",
-    ]
-    assert differences(one, other)[-1].startswith(
-        "slot 2: only in the second: temp less 32.5 degC,"
-    )
-    assert differences(other, one)[-1].startswith("slot 2: only in the first: temp less 32.5 degC,")
-    assert differences(one, replace(one, tick_us=5)) == ["tick_us: 1000000 and 5"]

@@ -2,7 +2,6 @@
 
 import errno
 import io
-import json
 import signal
 import sys
 from math import radians
@@ -15,8 +14,6 @@ from zerorate_tools import bounds, cli, closing, numbers, progress
 from zerorate_tools.allan import Noise, overlapping
 from zerorate_tools.errors import InFile, ZerorateError, os_error_in_words, printable
 from zerorate_tools.host import FloatCorrector
-from zerorate_tools.loop.motion.by_windows import GIVEN, GRAVITY, UNIT
-from zerorate_tools.loop.read.gate import TooLittleRest
 from zerorate_tools.model import Slot, build_model, write_model
 from zerorate_tools.model.term import Term
 from zerorate_tools.recordings import Scales
@@ -246,112 +243,3 @@ def test_a_pipe_is_told_now_and_then_how_long_it_takes_and_a_terminal_has_a_bar(
         while not told.getvalue():
             pass
     assert ("fetching: 0 s so far" in told.getvalue()) is not terminal
-
-
-@pytest.fixture
-def stood_in(monkeypatch, tmp_path):
-    """stood_in(lsb_per_g, shown, rests) -> (the report, Mock of each step, progress) of three."""
-
-    def run(lsb_per_g=None, shown=None, rests=True, holdout=None):
-        logs, told = ["a/x.csv", "a/y.csv", "a/z.csv"], []
-        scales = SimpleNamespace(accel_lsb_per_g=lsb_per_g)
-        steps = {
-            "tick_seconds": Mock(side_effect=[1.0, 9.0, 1.0]),
-            "read_ticks": Mock(
-                side_effect=lambda log, tick_s=0.0: SimpleNamespace(name=log[2], scales=scales)
-            ),
-            "sessions_of": Mock(side_effect=lambda every: (every[::2], "gate")),
-            "analyse": Mock(return_value="an analysis"),
-            "run_and_prune": Mock(return_value=("pruned", "model")),
-            "write_model": Mock(),
-            "report": Mock(side_effect=lambda of: {"of": of, "n": np.float64(0.5)}),
-            "shown_in_motion": Mock(return_value=shown),
-            "write_in_motion": Mock(return_value={"n": np.arange(2)}),
-        }
-        if not rests:
-            steps["sessions_of"].side_effect = TooLittleRest("too short")
-        for name, stand_in in steps.items():
-            monkeypatch.setattr(closing, name, stand_in)
-        steps["page"] = Mock()
-        monkeypatch.setattr("zerorate_tools.report.write_report", steps["page"])
-        result = closing.close(logs, tmp_path / "out", holdout, told.append, online=True)
-        assert json.loads((tmp_path / "out" / "report.json").read_text()) == result
-        return result, SimpleNamespace(**steps), told
-
-    return run
-
-
-@pytest.mark.parametrize(("holdout", "at"), [(None, None), ("z.csv", 1), ("a/x.csv", 0)])
-def test_recordings_that_rest_are_read_in_one_tick_and_analysed_run_and_written(
-    stood_in, holdout, at
-):
-    result, steps, told = stood_in(holdout=holdout)
-    assert result == {"of": "pruned", "n": 0.5} and told == [1, 1, 1]
-    assert [one.args[1] for one in steps.read_ticks.call_args_list] == [9.0] * 3
-    kept, held, gate, logs = steps.analyse.call_args.args
-    assert [s.name for s in kept] == ["x", "z"] and (held, gate) == (at, "gate")
-    assert logs == {"x": "a/x.csv", "y": "a/y.csv", "z": "a/z.csv"}
-    analysis, _, corrected, online, _ = steps.run_and_prune.call_args.args
-    assert (analysis, corrected.name, online) == ("an analysis", "corrected.parquet", True)
-    assert steps.write_model.call_args.args[0] == "model"
-    assert steps.page.call_args.args[:2] == ("pruned", result)
-
-
-@pytest.mark.parametrize(("holdout", "at"), [(None, None), ("y.csv", 1)])
-def test_recordings_that_hardly_rest_are_closed_on_their_motion(stood_in, holdout, at):
-    result, steps, _ = stood_in(8192.0, "shown", rests=False, holdout=holdout)
-    shown, moved = steps.shown_in_motion.call_args.args, steps.write_in_motion.call_args.args
-    assert result == {"n": [0, 1]} and shown[1] == at and moved[0] == "shown" and moved[2] == at
-
-
-@pytest.mark.parametrize("lsb_per_g", [None, 8192.0])
-def test_where_motion_shows_nothing_either_gravity_is_asked_for_if_it_was_not_there(
-    stood_in, lsb_per_g
-):
-    with pytest.raises(TooLittleRest, match="too short") as refused:
-        stood_in(lsb_per_g, rests=False)
-    assert ("gravity" in str(refused.value)) is (lsb_per_g is None)
-
-
-UNSEEN = np.array([[1, 0, 0], [0, 0, 1], [0, 0, 0]])
-SHOWN = SimpleNamespace(
-    **{"matrix": np.diag([0.01, 0.0, -0.02]), "deviation": np.full((3, 3), 0.001)},
-    **{"before": 3.0, "after": 1.25, "unit": "deg/min", "runs": 7, "unseen": UNSEEN},
-    found=False,
-    notes=["a: left out"],
-)
-
-
-@pytest.mark.parametrize(("names", "held"), [(["a", "b", "c"], ["b"]), (["a"], ["a"])])
-def test_what_motion_shows_is_told_with_what_it_did_not_show(names, held):
-    result = closing._result(SHOWN, names, held)
-    assert result["split"]["train"] == (["a"] if len(names) == 1 else ["a", "c"])
-    assert result["split"]["unit"].startswith("windows" if len(names) == 1 else "power-on")
-    told = result["in_motion"]
-    assert told["matrix_percent"] == [[1.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, -2.0]]
-    assert told["ci95_percent"] == [[0.196] * 3] * 3 and told["not_seen"] == [
-        "scale of x",
-        "y from z",
-    ]
-    assert (told["before"], told["after"], told["windows"]) == (3.0, 3.0, 7)
-    asked = [what[:12] for what in result["unexplained"]["measure_next"]]
-    assert asked == ["hold x level", "hold z level", "leave the de"]
-    assert result["unexplained"]["what_is_known"].endswith("; a: left out")
-    assert result["verdict"] == "nothing-found"
-    words = closing.motion_in_words(result).splitlines()
-    assert words[0].startswith("found: nothing in motion; gravity sees 3.00 deg/min")
-    assert "not seen in this motion: scale of x, y from z" in words
-    result["effects"] = [{"effect": "scale-factor", "confidence": "confirmed"}]
-    for unit, seen_by in ((GIVEN, "reference"), (GRAVITY, "gravity")):
-        told["unit"] = UNIT[unit]
-        assert f"{seen_by} sees 3.00 -> 3.00" in closing.motion_in_words(result)
-
-
-def test_the_last_recording_is_held_out_unless_another_is_named(monkeypatch):
-    asked = []
-    monkeypatch.setattr(closing, "moving_of", lambda path, ticks: path)
-    monkeypatch.setattr(closing, "by_windows", lambda *of: asked.append(of))
-    ticks = [SimpleNamespace(path=name) for name in "abc"]
-    for given, holdout in ((ticks, None), (ticks, 0), (ticks[:1], None)):
-        closing.shown_in_motion(given, holdout)
-    assert asked == [(["a", "b"], ["c"]), (["b", "c"], ["a"]), (["a"], [])]

@@ -90,6 +90,8 @@ TO_FILES, WATCHED = "simulate.simulate_to_files", "watch.watching.watch"
           full_scale_g=4, dlpf_hz=20, part="P", setup="imu = 1")),
     *((f"record 0 --out o.parquet --address {at}", RECORDER, call("0", OUT, **RECORD, address=at))
       for at in (0x08, 0x77)),
+    ("record --recover x.partial.csv", "recordings.recover", call(Path("x.partial.csv"), None)),
+    ("model show m.bin", "model.read_model", call(M)),
     (REPLAYED, "recordings.open_recording", call(LOG, keep_gaps=True)),
     (REPLAYED, "replay.replay", call(LOG, OUT, options=SOURCES, **REPLAY)),
     (REPLAYED + " --runtime x86 --state s --from-state f --resume --model m.bin", "replay.replay",
