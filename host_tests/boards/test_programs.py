@@ -130,49 +130,18 @@ def test_the_first_program_learns_and_goes_on_after_every_fault_of_the_sensor(
     learned(console)
 
 
-def test_the_second_program_keeps_what_it_learned_through_a_power_cut(pico, programs, start):
-    console = start(programs[2])
-    assert console.line_with("stored")
-    assert console.line_with("kept")
-    pico.ask("power")
-    assert console.line_with("loaded")
-
-
-def test_the_yaw_that_is_printed_stands_still_with_the_bias_taken_off(pico, programs, start):
-    console = start(programs[1])
-    for _ in range(15):
-        without, corrected = re.search(
-            r"without (\S+)  with (\S+) deg", console.line_with("yaw")
-        ).groups()
-    assert float(without) == pytest.approx(15 * BIAS_DPS[2], abs=0.2)
-    assert abs(float(corrected)) < 0.2
-
-
-def test_a_recording_is_made_and_the_firmware_watched(pico, tmp_path, capsys):
-    out = tmp_path / "run.parquet"
-    setup = tmp_path / "pins.py"
-    setup.write_text("from zerorate_i2c.board import setup\nimu = setup(scl=5, sda=4)\n")
-    options = ["--seconds", "3", "--setup", str(setup)]
-    assert main(["record", pico.port, "--out", str(out), *options]) == 0
-    recording = read_recording(out)
-    assert len(recording.columns["gx"]) > 10
-    assert recording.columns["gx"].mean() == pytest.approx(40, abs=3)
-    assert main(["watch", pico.port, "--for", "3", "--setup", str(setup)]) == 0
-    assert "bias dps" in capsys.readouterr().out
-
-
 def test_after_each_command_the_program_runs_again_at_a_friendly_prompt(
-    pico, programs, start, tmp_path
+    pico, programs, start, tmp_path, capsys
 ):
     start(programs[0]).close()
-    record = ["record", pico.port, "--out", str(tmp_path / "run.csv"), "--seconds", "2"]
-    for command in (
-        ["flash", pico.port],
-        ["flash", "--dry-run", pico.port],
-        record,
-        ["watch", pico.port, "--for", "2"],
+    out, setup = tmp_path / "run.parquet", tmp_path / "pins.py"
+    setup.write_text("from zerorate_i2c.board import setup\nimu = setup(scl=5, sda=4)\n")
+    for command, words in (
+        ("flash", []),
+        ("record", ["--out", str(out), "--seconds", "3", "--setup", str(setup)]),
+        ("watch", ["--for", "2", "--setup", str(setup)]),
     ):
-        assert main(command) == 0
+        assert main([command, pico.port, *words]) == 0
         console = Console(pico.port)
         try:
             assert next(rates(console))
@@ -183,6 +152,10 @@ def test_after_each_command_the_program_runs_again_at_a_friendly_prompt(
             assert not any("raw REPL" in line for line in console.said), command
         finally:
             console.close()
+    recording = read_recording(out)
+    assert len(recording.columns["gx"]) > 10
+    assert recording.columns["gx"].mean() == pytest.approx(40, abs=3)
+    assert "bias dps" in capsys.readouterr().out
 
 
 def test_rates_are_corrected_again_within_three_seconds_of_each_reset_and_unplugging():
@@ -191,53 +164,6 @@ def test_rates_are_corrected_again_within_three_seconds_of_each_reset_and_unplug
     assert found["resets"] == found["unplugs"] == 14
     assert found["lines"] > 400
     assert passed(found), found
-
-
-ROWS = 128
-
-
-@pytest.fixture(scope="module")
-def all_parts(pico):
-    """The Pico with every part of the firmware."""
-    flash(pico.port, say=lambda line: None, parts=["all"])
-    return pico
-
-
-@pytest.fixture(scope="module")
-def modes():
-    return plays(workload(ROWS))
-
-
-@pytest.mark.parametrize("mode", ["rest", "bursts", "motion and gravity", "effects, refined"])
-def test_rates_and_states_are_equal(all_parts, modes, mode):
-    play = replace(modes[mode], rows=modes[mode].rows[:ROWS])
-    played = on_pico(all_parts, play)
-    assert len(played.cycles) == (ROWS // play.at_once if play.at_once else ROWS)
-    assert played.data == on_host(play).data
-
-
-def test_a_sample_of_a_burst_takes_no_more_cycles_than_its_limit(all_parts):
-    played = on_pico(all_parts, plays(workload())["bursts"])
-    limit = next(limit for limit in LIMITS if "bursts" in limit.figure)
-    assert sum(played.cycles) / len(played.cycles) / 64 <= limit.bound
-
-
-@pytest.mark.parametrize("odr_hz", [12.5, 1000 / 7])
-def test_a_board_computes_the_settings_of_this_host(all_parts, odr_hz):
-    rows = np.zeros((1, 8), np.int32)
-    for gyro, accel, temp in ((131.0, 16384.0, 340.0), (16.4, 2048.0, 326.8)):
-        play = Play(rows, {}, sensor=(odr_hz, gyro, accel, temp, 36.53))
-        assert on_pico(all_parts, play).data == on_host(play).data
-
-
-def test_the_golden_trace_ends_in_the_committed_state(all_parts):
-    mode = "ignoring"
-    samples, dt_us = frames(trace.UPDATES[mode])
-    rows = np.c_[dt_us, samples].astype(np.int32)
-    options = {**trace.LIMITS, **trace.MODES[mode]}
-    data = on_pico(all_parts, Play(rows, options, sensor=trace.SENSOR)).data
-    state = data[-4 * len(corrector_for(mode).state) :]
-    assert checksums(state, b"")["state"] == json.loads(GOLDEN.read_text())[mode]["state"]
 
 
 def test_a_board_with_little_heap_says_so_in_a_sentence(pico):
@@ -278,6 +204,52 @@ def test_power_cut_while_a_part_is_put_in_place_leaves_a_firmware_that_runs(pico
     assert flash(pico.port, parts=["self-test"], say=lambda line: None).sent_bytes < 10_000
 
 
+ROWS = 128
+
+
+@pytest.fixture(scope="module")
+def all_parts(pico):
+    """The Pico with every part of the firmware."""
+    flash(pico.port, say=lambda line: None, parts=["all"])
+    return pico
+
+
+@pytest.fixture(scope="module")
+def modes():
+    return plays(workload(ROWS))
+
+
+@pytest.mark.parametrize("mode", ["rest", "bursts", "motion and gravity", "effects, refined"])
+def test_rates_and_states_are_equal(all_parts, modes, mode):
+    play = replace(modes[mode], rows=modes[mode].rows[:ROWS])
+    played = on_pico(all_parts, play)
+    assert len(played.cycles) == (ROWS // play.at_once if play.at_once else ROWS)
+    assert played.data == on_host(play).data
+
+
+def test_a_sample_of_a_burst_takes_no_more_cycles_than_its_limit(all_parts):
+    played = on_pico(all_parts, plays(workload())["bursts"])
+    limit = next(limit for limit in LIMITS if "bursts" in limit.figure)
+    assert sum(played.cycles) / len(played.cycles) / 64 <= limit.bound
+
+
+def test_a_board_computes_the_settings_of_this_host(all_parts):
+    rows = np.zeros((1, 8), np.int32)
+    for gyro, accel, temp in ((131.0, 16384.0, 340.0), (16.4, 2048.0, 326.8)):
+        play = Play(rows, {}, sensor=(1000 / 7, gyro, accel, temp, 36.53))
+        assert on_pico(all_parts, play).data == on_host(play).data
+
+
+def test_the_golden_trace_ends_in_the_committed_state(all_parts):
+    mode = "ignoring"
+    samples, dt_us = frames(trace.UPDATES[mode])
+    rows = np.c_[dt_us, samples].astype(np.int32)
+    options = {**trace.LIMITS, **trace.MODES[mode]}
+    data = on_pico(all_parts, Play(rows, options, sensor=trace.SENSOR)).data
+    state = data[-4 * len(corrector_for(mode).state) :]
+    assert checksums(state, b"")["state"] == json.loads(GOLDEN.read_text())[mode]["state"]
+
+
 def test_what_the_own_program_learned_is_watched_and_not_replaced(
     pico, programs, start, tmp_path, capsys
 ):
@@ -286,7 +258,7 @@ def test_what_the_own_program_learned_is_watched_and_not_replaced(
     learned(console)
     console.close()
     picture = tmp_path / "own.png"
-    assert main(["watch", pico.port, "--own", "--for", "6", "--plot", str(picture)]) == 0
+    assert main(["watch", pico.port, "--own", "--for", "3", "--plot", str(picture)]) == 0
     x_dps, source = re.search(r"x (\S+)±\S+ (\S+)", capsys.readouterr().out).groups()
     assert float(x_dps) == pytest.approx(BIAS_DPS[0], abs=0.02)
     assert source in ("any-temperature", "fit", "this-temperature")
