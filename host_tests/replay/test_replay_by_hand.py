@@ -1,12 +1,7 @@
 """A replay in this process: what a MicroPython is given and gives back, drawings, kept states."""
 
-import io
-import runpy
-import sys
-from contextlib import nullcontext, redirect_stdout
+from contextlib import nullcontext
 from dataclasses import replace
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from types import SimpleNamespace
 
 import numpy as np
@@ -60,30 +55,6 @@ SLOTS = [
 ]
 
 
-class Here:
-    """A Runtime that runs a script in this process, and loses so many samples."""
-
-    name = "here"
-
-    def __init__(self, lost=0):
-        self.lost = lost
-
-    def run(self, script, arguments, *, modules, files_in, **how):
-        assert [(m / "zerorate" / "corrector.py").is_file() for m in modules] == [True]
-        with TemporaryDirectory() as folder, pytest.MonkeyPatch.context() as patch:
-            patch.chdir(folder)
-            for name, content in files_in.items():
-                data = content if isinstance(content, bytes) else content.read_bytes()
-                Path(name).write_bytes(data)
-            patch.setattr(sys, "argv", [script.name, *map(str, arguments)])
-            with redirect_stdout(io.StringIO()) as said:
-                runpy.run_path(str(script))
-            files = {name: Path(name).read_bytes() for name in how["files_out"]}
-        out = files["out.bin"]
-        files["out.bin"] = out[: len(out) - 68 * self.lost]
-        return SimpleNamespace(files=files, stdout=said.getvalue())
-
-
 @pytest.fixture(scope="module")
 def recording():
     """With gaps in a channel, and time that leaps further than a step can tell, and back."""
@@ -110,11 +81,6 @@ def model(recording, tmp_path):
     return tmp_path / "model.bin"
 
 
-@pytest.fixture(autouse=True)
-def const(monkeypatch):
-    monkeypatch.setitem(sys.modules, "micropython", SimpleNamespace(const=lambda value: value))
-
-
 def played(engine, recording, model, rows=300, options=None):
     corrector = corrector_for(recording, options or {})
     channels = load_model(corrector, model, recording) if model else ()
@@ -125,12 +91,14 @@ def played(engine, recording, model, rows=300, options=None):
 
 
 @pytest.mark.parametrize("options", [{}, {"motion": False}, {"gravity": False}])
-def test_through_files_or_compiled_the_firmware_gives_the_same(recording, model, options):
+def test_through_files_or_compiled_the_firmware_gives_the_same(
+    recording, model, options, find_runtime
+):
     how = recording, None if options else model, 300, options
     ours, own_state, sizes = played(CPythonEngine(), *how)
     assert sizes == [300, 300, 300, 100]
     assert len(set(ours["source"].ravel())) > 1 and ours["quality_q8"].any()
-    for engine in (InterpreterEngine(Here()), NativeEngine()):
+    for engine in (InterpreterEngine(find_runtime("x86")), NativeEngine()):
         theirs, state, their_sizes = played(engine, *how)
         assert state == own_state and their_sizes == sizes
         for name, values in ours.items():
@@ -138,8 +106,11 @@ def test_through_files_or_compiled_the_firmware_gives_the_same(recording, model,
 
 
 def test_samples_that_an_interpreter_lost_are_said(recording):
+    def run(script, arguments, **how):
+        return SimpleNamespace(files=dict.fromkeys(how["files_out"], b""), stdout="")
+
     with pytest.raises(ZerorateError, match="here lost samples"):
-        played(InterpreterEngine(Here(lost=1)), recording, None)
+        played(InterpreterEngine(SimpleNamespace(name="here", run=run)), recording, None)
 
 
 def test_a_package_that_is_not_there_is_named(tmp_path):

@@ -8,7 +8,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 from zerorate import Corrector, Sensor
 from zerorate_tools.layout import AXIS, ESTIMATOR, SETTINGS, axis_at
-from zerorate_tools.loop.motion.by_windows import GIVEN
 from zerorate_tools.loop.search.curve import FORMS, KIND
 from zerorate_tools.model.effects import EFFECTS
 from zerorate_tools.recordings import open_recording
@@ -132,92 +131,6 @@ def test_the_last_moment_is_the_state_that_a_replay_ends_in(log, seen):
         shown = [e.bias_dps for e in seen[-1].axes[axis]]
         assert shown[0] == pytest.approx(biases[0])
         assert set(np.round(shown, 9)) <= set(np.round(biases, 9))
-
-
-@pytest.mark.parametrize("count", [0, 1, 2])
-def test_what_was_found_is_counted(count):
-    one = {"effect": "thermal-lag", "sources": ["temp"], "confidence": "confirmed"}
-    said = sentences.found_in_short({"effects": [one] * count})
-    assert said.count("(confirmed)") == count
-    assert said.startswith(["No effect", "1 effect found:", "2 effects found:"][count])
-
-
-_LAG = {
-    "effect": "thermal-lag",
-    "sources": ["temp"],
-    "coefficients": [1],
-    "confidence": "confirmed",
-}
-_G = {**_LAG, "effect": "linear-g", "sources": ["acc_x"]}
-_TURNS = {**_LAG, "effect": "scale-factor", "in_motion": True}
-_UNEXPLAINED = {"verdict": "unexplained-residual"}
-_SAID = [
-    ("LAG explains most of the error: 10.0 to 4.99", "", [_LAG], 4.99, {}),
-    ("LAG explains part of the error: 10.0 to 5.00",
-     ". No recorded channel explains the rest", [_LAG], 5.0, _UNEXPLAINED),
-    ("LAG: no gain, 10.0 to 10.0", "", [_LAG], 10.0, {}),
-    ("LAG and G explain most of the error: 10.0 to 2.00", "", [_LAG, _G], 2.0, {}),
-    ("LAG, G and G explain part of the error: 10.0 to 9.00", "", [_LAG, _G, _G], 9.0, {}),
-    ("Nothing was found at rest that the firmware does not already correct: 2.00", "",
-     [_TURNS, {**_LAG, "coefficients": []}], 2.0, {}),
-    ("Nothing was found in the bias, beside the reference, that explains the error: 2.00", "",
-     [], 2.0, {**_UNEXPLAINED, "truth": {"in_motion": GIVEN}}),
-]  # fmt: skip
-
-
-@pytest.mark.parametrize(("said", "end", "effects", "after", "more"), _SAID)
-def test_the_answer_names_what_was_found_and_what_is_left(said, end, effects, after, more):
-    whole = {"before_mdps": 10.0, "after_mdps": after, "floor_mdps": 1.0}
-    told = {"in_all": whole, "verdict": "", "effects": effects, **more}
-    said += " mdps on held-out data (noise floor 1.00)" + end
-    named = said.replace("LAG", "Lag of the thermometer").replace("G", sentences.title("linear-g"))
-    assert sentences.headline(told) == named
-    assert sentences.on_the_board(told) == sentences.why_both(told) == ""
-
-
-@pytest.mark.parametrize(
-    ("effects", "before", "after", "gains"),
-    [
-        ([_LAG], 10.0, 10.0, "gains nothing: 10.0 to 10.0 mdps"),
-        ([_LAG], 10.0, 12.0, "gains nothing: 10.0 to 12.0 mdps"),
-        ([_LAG], 10.0, 8.01, "gains little: 10.0 to 8.01 mdps"),
-        ([_LAG], 10.0, 8.0, "gains too: 10.0 to 8.00 mdps"),
-        ([_TURNS], 10.0, 8.0, "leaves 8.00 mdps"),
-    ],
-)
-def test_what_a_board_gains_is_said_and_why_it_has_a_figure_of_its_own(
-    effects, before, after, gains
-):
-    online = {"in_all": {"before_mdps": before, "after_mdps": after}}
-    told = {"online": online, "effects": effects, "in_all": {"after_mdps": 9.0}, "split": {}}
-    assert sentences.on_the_board(told) == "A board that keeps learning at rest " + gains
-    why = sentences.why_both(told)
-    assert ("so little error is left" in why) == (after < 9.0)
-    assert ("only the model corrects it" in why) == (effects == [_LAG])
-    assert "first minutes" in sentences.why_both(told | {"split": {"how_much_weaker": 1}})
-
-
-def test_how_sure_is_of_the_data_held_out():
-    every = map(sentences.how_sure, ({**_LAG, "confidence": "tentative"}, _TURNS, _LAG))
-    begun = ("Tentative: the fitted", "Confirmed: the held-out", "Confirmed: it also lowers")
-    assert all(map(str.startswith, every, begun))
-
-
-@pytest.mark.parametrize(
-    ("effect", "named"),
-    [
-        ("thermal-lag", "Lag of the thermometer"),
-        ("cross-axis", "Cross-axis sensitivity"),
-        ("of-nobody", "of-nobody"),
-        ("channel-lag", "any recorded channel, lagged"),
-        ("channel-lag(load, fan)", "load and fan, lagged"),
-    ],
-)
-def test_an_effect_has_a_name_and_a_channels_has_no_known_mechanism(effect, named):
-    assert sentences.title(effect) == named
-    assert sentences.title("channel-lag(load)", ["fan"]) == "fan, lagged"
-    assert sentences.meaning(effect).endswith("mechanism is unknown.") == ("channel" in effect)
-    assert sentences.sentence("so it is") == sentences.sentence("so it is.") == "So it is."
 
 
 def part(blocks, gap=None, name="a"):
