@@ -100,6 +100,7 @@ def _scale(unseen):
     return RateScale(
         *(matrix, matrix / 10 + 1e-4, 1e-9, "scale-factor+cross-axis", "gravity", np.ones(2)),
         *(2.0, 0.5, "degrees a minute", 40, lsb, unseen & (matrix > 0.0), 0.01, 0.8 * matrix),
+        lost=(3.1, 0.4),
     )
 
 

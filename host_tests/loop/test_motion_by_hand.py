@@ -175,7 +175,8 @@ def test_a_matrix_is_found_where_some_of_it_is_seen_and_a_heading_is_hardly_wors
     large = np.full((3, 3), 0.05), np.full((3, 3), 0.01), 1e-9, "scale-factor", reference
     seen = np.full(3, 300.0), np.arange(9).reshape(3, 3) < unseen
     unit = by_windows.UNIT[reference]
-    shown = by_windows.RateScale(*large, np.ones(2), 2.0, 1.0, unit, 40, *seen, 1.0, large[0])
+    tilts = 2.0, 1.0, unit, 40
+    shown = by_windows.RateScale(*large, np.ones(2), *tilts, *seen, 1.0, large[0], (6.0, 1.0))
     monkeypatch.setattr(by_windows, "heading_lost", lambda judged: (6.0, after))
     assert by_windows._judged_by_heading(shown, [], []).found is found
     lost = iter([None, (6.0, after)])  # what was left out sees no stretch of a heading

@@ -94,6 +94,7 @@ def result_of(ci=CI, found=True, not_seen=()):
         "unexplained": {"what_is_known": "Nothing.", "measure_next": ["turn it"]},
         "in_motion": {
             **{"before": 1.0, "after": 0.2, "unit": "degrees a minute of tilt", "windows": 12},
+            **{"lost_before": 3.1, "lost_after": 0.4},
             "matrix_percent": (100 * ERROR).tolist(),
             "ci95_percent": (100 * ci).tolist(),
             "not_seen": list(not_seen),

@@ -222,10 +222,9 @@ def motion_in_words(result: Mapping[str, Any]) -> str:
     seen_by = "the reference" if m["unit"] == UNIT[GIVEN] else "gravity"
     if effect:
         lines = [
-            f"{effect['effect']} ({effect['confidence']}): on motion held out, {seen_by} sees "
-            f"{m['before']:.2f} -> {m['after']:.2f} {m['unit']}"
+            f"{effect['effect']} ({effect['confidence']}): {heading_in_words(m)}",
+            f"on motion held out, {seen_by} sees {m['before']:.2f} -> {m['after']:.2f} {m['unit']}",
         ]
-        lines += [heading_in_words(m)] if "heading_before" in m else []
         rows = zip(_AXES, m["matrix_percent"], m["ci95_percent"])
         lines += [
             f"error of {axis}, % of the rate of x y z: "

@@ -254,22 +254,21 @@ def _errors(
     return np.array(rows)
 
 
-HEAD = "in motion, deg/min, left out"
+HEAD = "in motion, deg/min"
 WITHOUT, WITH = "without the matrix", "with the matrix"
 
 
 @dataclass(frozen=True)
 class Won:
     """turned: degrees a minute of windows left out, without and with; unit: what turns them;
-    heading: the same of heading against the attitude given, None where it was not judged; attitude:
-    whether a log has one; deployed: whether `close` would deploy it; refused: why the logs are not
-    of one device, "" where they are.
+    heading: the same of heading, against an attitude that is given, else as the matrix turns it;
+    deployed: whether `close` would deploy it; refused: why the logs are not of one device, "" where
+    they are.
     """
 
     turned: tuple[float, float] = (float("nan"), float("nan"))
     unit: str = UNIT[GRAVITY]
-    heading: tuple[float, float] | None = None
-    attitude: bool = False
+    heading: tuple[float, float] = (float("nan"), float("nan"))
     deployed: bool = False
     refused: str = ""
 
@@ -279,12 +278,10 @@ class Won:
         before, after = self.turned
         if not self.deployed:
             return f"In motion no matrix would lower the error: {seen_in_words(before, self.unit)}."
-        more = ""
-        if self.heading is not None:
-            more = f", and {self.heading[1]:.2f} of {self.heading[0]:.2f} of heading"
         return (
-            f"In motion the matrix of `zerorate close` would leave {after:.2f} of {before:.2f} "
-            f"{self.unit}{more}, on windows left out."
+            f"In motion the matrix of `zerorate close` would leave {self.heading[1]:.2f} of "
+            f"{self.heading[0]:.2f} degrees a minute of heading, and {after:.2f} of {before:.2f} "
+            f"{self.unit} on windows left out."
         )
 
     def rows(self) -> list[tuple[str, str, str, str]]:
@@ -293,8 +290,7 @@ class Won:
         if self.refused:
             return []
         names = (WITHOUT, WITH) if self.deployed else (WITHOUT,)
-        none = "" if self.attitude else "no attitude"
-        headings = [f"{h:.2f}" for h in self.heading] if self.heading else [none] * 2
+        headings = [f"{h:.2f}" if self.deployed else "" for h in self.heading]
         head = (HEAD, self.unit.rpartition(" ")[2], "heading", "")
         return [head, *((n, f"{t:.2f}", h, "") for n, t, h in zip(names, self.turned, headings))]
 
@@ -311,6 +307,5 @@ def matrix_of(logs: Sequence[str | Path]) -> Won | None:
         return Won(refused=str(problem))
     if shown is None:
         return None
-    heading = shown.heading if shown.found else None
-    attitude = any(m.given is not None for m in moving)
-    return Won((shown.before, shown.after), shown.unit, heading, attitude, shown.found)
+    heading = shown.heading or shown.lost
+    return Won((shown.before, shown.after), shown.unit, heading, shown.found)

@@ -23,8 +23,9 @@ class RateScale:
     gains: of each way to judge what was left out, above zero where it is no worse; before, after:
     RMS of what turns windows, in `unit`; fastest_dps: (3,) up to which it was seen; unseen: (3, 3)
     bool, entries that the motion did not show; level: of p; deployed: (3, 3) what is taken out;
-    heading: degrees a minute lost against an attitude that was given, without and with the matrix
-    of what was left out; worse: of that, or of what was fitted, where it forbids the matrix;
+    lost: degrees a minute by which the entries turn the heading, without and with what is deployed,
+    by their posterior; heading: those lost against an attitude that was given, without and with the
+    matrix of what was left out; worse: of that, or of what was fitted, where it forbids the matrix;
     unused: names of recordings whose attitude shows less than gravity; by_others: of several
     recordings without a holdout, what would be deployed by all but the one named.
     """
@@ -43,6 +44,7 @@ class RateScale:
     unseen: np.ndarray
     level: float
     deployed: np.ndarray
+    lost: tuple[float, float]
     heading: tuple[float, float] | None = None
     worse: tuple[float, float] | None = None
     unused: tuple[str, ...] = ()
@@ -187,7 +189,8 @@ def _by_windows(train: list[Moving], holdout: list[Moving]) -> RateScale | None:
     check_one_device(list(statements.items()))
     device = device_of(list(statements.values()))
     headings = {f.moving.name: f.heading for f in fitted}
-    kept = device.kept(list(headings.values()))
+    seen = [*headings.values()]
+    kept = device.kept(seen)
     entries, covariance, shown = device.entries, device.covariance, device.shown
     # small sizes are the better guess; how far off it is, is not said as if they were known
     wide = device_of(list(statements.values()), large=True)
@@ -218,6 +221,7 @@ def _by_windows(train: list[Moving], holdout: list[Moving]) -> RateScale | None:
         p_value=float(np.exp(-max(min(device.nats, predicted), 0.0))),
         level=0.0 if all(f.moving.planar and f.moving.given is None for f in fitted) else _LEVEL,
         deployed=np.round(deployed, _DECIMALS).reshape(3, 3) + 0.0,  # no -0.0
+        lost=(device.heading_lost(seen, 0 * deployed), device.heading_lost(seen, deployed)),
         kind=_kind(entries, covariance),
         reference=reference,
         gains=np.array([gain, most * before - after]),

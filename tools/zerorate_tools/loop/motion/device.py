@@ -66,7 +66,7 @@ class Device:
     def kept(self, headings: Sequence[np.ndarray]) -> np.ndarray:
         """(9, 9) of the entries what is deployed: all that heading does not see, and of the rest
         the largest share, 0 to 1, that surely lessens the heading lost in the recordings seen.
-        headings: (9, 9) each, mean square of heading by entries.
+        headings: (9, 9) each, as of `Rows`.
 
         With d taken out of M, the mean square of heading grows where `d Q M < d Q d / 2`; M is
         each recording's own, told by its windows and by the device's entries.
@@ -80,6 +80,13 @@ class Device:
         share = np.clip(2.0 * (mean - _SURE * sigma) / size, 0.0, 1.0)
         seen = np.linalg.pinv(every, rcond=1e-6, hermitian=True) @ every
         return np.eye(MATRIX) - (1.0 - share) * seen
+
+    def heading_lost(self, headings: Sequence[np.ndarray], deployed: np.ndarray) -> float:
+        """Degrees a minute by which the entries, with those deployed (9,) taken out, turn the
+        heading, RMS over motion like that of the recordings seen. headings: (9, 9) each."""
+        left = self.entries - deployed
+        square = self.covariance + np.outer(left, left)
+        return 60.0 * float(np.degrees(np.sqrt(np.mean([(h * square).sum() for h in headings]))))
 
 
 @dataclass(frozen=True)

@@ -34,8 +34,8 @@ _WIDTH = np.concatenate([np.full(n, OWN_SIGMA[name]) for name, n in OWN.items()]
 @dataclass
 class Fitted:
     """A recording beside a matrix: its own errors, their precision before (p,), rows of its
-    windows, precision (w, q, 3) and noise (q, 3) of them, folds (w,) of a window, heading (9, 9),
-    its mean square by entries, and doubt, by how much parts of it contradict each other.
+    windows, precision (w, q, 3) and noise (q, 3) of them, folds (w,) of a window, heading (9, 9) as
+    of `Rows`, and doubt, by how much parts of it contradict each other.
     """
 
     moving: Moving

@@ -46,8 +46,9 @@ class Rows:
     errors: (w, q, 3); columns: (w, q, 3, p); tilting: (w, q, 3, 3) by a steady turn of the window's
     frame in rad/s; there: (w, q) bool, other rows are zeros; kinds: (q, 3) number of rows of one
     noise, the vertical's apart; counts: (q,) share of a row that is no other row's; bands: (b, q)
-    whether a row is of a band, the last one of turns between rests; heading: (9, 9) mean square of
-    the heading, or beside an attitude of all three turns, by entries.
+    whether a row is of a band, the last one of turns between rests; heading: (9, 9) by entries,
+    mean square of the steady drift of heading, rad/s, that is as far off over a window, or beside
+    an attitude of all three turns.
     """
 
     errors: np.ndarray
@@ -135,5 +136,5 @@ def _heading(columns: Columns, steps: np.ndarray) -> np.ndarray:
     if columns.off is None:
         up = columns.seen[steps].mean(axis=0)
         turned = np.einsum("kir,i->kr", turned, up / np.linalg.norm(up))
-    turned = turned.reshape(-1, MATRIX)
-    return turned.T @ turned / len(steps)
+    turned = turned.reshape(-1, MATRIX) / (len(steps) * columns.step_s)
+    return 3.0 * turned.T @ turned / len(steps)  # a steady drift has a third of its last square

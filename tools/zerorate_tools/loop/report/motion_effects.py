@@ -41,20 +41,24 @@ def interference(lines: list[Line]) -> list[dict[str, Any]]:
 
 
 def heading_of(t: RateScale) -> dict[str, float]:
-    """Degrees a minute of heading lost before and after, where an attitude tells."""
-    names = ("heading_before", "heading_after")
-    return {} if t.heading is None else dict(zip(names, np.round(t.heading, 3).tolist()))
+    """Degrees a minute of heading lost before and after, by the entries, and where an attitude
+    tells."""
+    names = ("lost_before", "lost_after", "heading_before", "heading_after")
+    return dict(zip(names, np.round([*t.lost, *(t.heading or ())], 3).tolist()))
 
 
 def heading_in_words(m: Mapping[str, Any]) -> str:
-    before, after = m["heading_before"], m["heading_after"]
-    return f"against the attitude {before:.2f} -> {after:.2f} degrees a minute of heading"
+    """A clause each of what the entries tell and, if there is one, an attitude."""
+    before, after = m["lost_before"], m["lost_after"]
+    said = f"it turns the heading by {before:.2f} -> {after:.2f} degrees a minute"
+    if "heading_before" not in m:
+        return said
+    return f"{said}; against the attitude {m['heading_before']:.2f} -> {m['heading_after']:.2f}"
 
 
 def turning(t: RateScale) -> dict[str, Any]:
     names = ("rate_x", "rate_y", "rate_z")
     heading = heading_of(t)
-    more = f"; {heading_in_words(heading)}" if heading else ""
     return {
         "effect": t.kind,
         "sources": list(names),
@@ -65,7 +69,7 @@ def turning(t: RateScale) -> dict[str, Any]:
         "p_value": t.p_value,
         "in_motion": {"before": t.before, "after": t.after, "unit": t.unit, **heading},
         "said": f"{t.kind} over {t.runs} windows, measured beside {t.reference}; it does not "
-        f"show at rest, where before and after are measured{more}",
+        f"show at rest, where before and after are measured; {heading_in_words(heading)}",
     }
 
 
