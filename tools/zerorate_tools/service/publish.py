@@ -130,6 +130,8 @@ class UnixSocket:
             if _answers(path):
                 raise InFile(path, "a service answers there", do="end it, or name another socket")
             path.unlink(missing_ok=True)  # of a service that was killed
+        elif path.exists():
+            raise InFile(path, "is no socket", do="name another")
         self._server = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         try:
             self._server.bind(os.fspath(path))
