@@ -66,8 +66,10 @@ def closed(version):
 
 
 def simulated(version):
+    for folder in ("runs", "truth"):
+        Path(folder).mkdir(exist_ok=True)
     described = {"every_session": {"minutes": 0.2}}
-    simulate_to_files(described, "a.csv", truth="a-truth.parquet", seed=version)
+    simulate_to_files(described, "runs/a.csv", truth="truth/a.parquet", seed=version)
 
 
 def replayed(version):

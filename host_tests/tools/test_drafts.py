@@ -2,6 +2,7 @@
 
 import errno
 import fcntl
+import json
 import os
 import signal
 import subprocess
@@ -145,6 +146,31 @@ class TestSwitch:
             settle(tmp_path)
         os.close(held)
 
+    def test_of_several_folders_is_finished_from_either(self, tmp_path):
+        for first in ("a", "b"):
+            root = tmp_path / first
+            lead = a_draft(root / "a", ".zerorate-switch", run="new")
+            other = a_draft(root / "b", truth="new")
+            (lead / ".zerorate-others").write_text(json.dumps([str(other)]))
+            (other / ".zerorate-lead").write_text(json.dumps(str(root / "a")))
+            (root / "b" / "truth").write_text("old")
+            clear_left_over(root / first)
+            assert (root / "a" / "run").read_text() == (root / "b" / "truth").read_text() == "new"
+            clear_left_over(root / "b")
+            assert not list(root.rglob(".zerorate*"))
+
+    def test_does_not_move_what_does_not_say_it_is_part_of_it(self, tmp_path):
+        """A folder from elsewhere could name any other."""
+        lead = a_draft(tmp_path / "a", ".zerorate-switch")
+        home = a_draft(tmp_path / "b", thesis="mine")
+        plain = tmp_path / "c" / "home"
+        plain.mkdir(parents=True)
+        (plain / "thesis").write_text("mine")
+        (plain / ".zerorate-lead").write_text(json.dumps(str(tmp_path / "a")))
+        (lead / ".zerorate-others").write_text(json.dumps([str(home), str(plain)]))
+        settle(tmp_path / "a")
+        assert (home / "thesis").exists() and (plain / "thesis").exists()
+
     def test_that_is_a_link_is_none(self, tmp_path):
         (tmp_path / "home").mkdir()
         (tmp_path / "home" / "thesis").write_text("mine")
@@ -162,13 +188,16 @@ class TestSwitch:
         tmp_path.chmod(0o700)
 
     @pytest.mark.parametrize("links", [True, False])
-    @pytest.mark.parametrize("fails_at", range(2))
+    @pytest.mark.parametrize("fails_at", range(4))
     def test_that_fails_anywhere_brings_all_back(self, tmp_path, monkeypatch, fails_at, links):
-        (tmp_path / "old").write_text("old")
-        replace, calls = os.replace, []
+        for folder in ("a", "b"):
+            (tmp_path / folder).mkdir()
+            (tmp_path / folder / "old").write_text("old")
+        replace, calls, others = os.replace, [], []
 
         def failing(source, target):
             calls.append(target)
+            others.extend(drafts._others(tmp_path / "a" / ".zerorate-switch"))
             if len(calls) - 1 == fails_at:
                 raise PermissionError(errno.EPERM, "immutable", str(source), None, str(target))
             replace(source, target)
@@ -176,22 +205,15 @@ class TestSwitch:
         if not links:
             monkeypatch.setattr(os, "link", no_links)
         with pytest.raises(InFile, match="(old|new): cannot be written: .*; all is as it was"):
-            with written_together(tmp_path) as draft:
-                (draft / "old").write_text("new")
-                (draft / "new").mkdir()
-                (draft / "new" / "x").write_text("new")
+            with all_written_together([tmp_path / "a", tmp_path / "b"]) as inside:
+                for draft in inside:
+                    (draft / "old").write_text("new")
+                    (draft / "new").mkdir()
+                    (draft / "new" / "x").write_text("new")
                 monkeypatch.setattr(os, "replace", failing)
-        assert contents(tmp_path) == {"old": "old"}
+        assert contents(tmp_path) == {"a/old": "old", "b/old": "old"}
         assert not list(tmp_path.rglob(".zerorate*"))
-
-
-def test_a_place_that_is_none_in_one_folder_leaves_the_others_as_they_were(tmp_path):
-    (tmp_path / "b" / "file").mkdir(parents=True)
-    with pytest.raises(InFile, match="Is a directory; all is as it was"):
-        with all_written_together([tmp_path / "a", tmp_path / "b"]) as inside:
-            for draft in inside:
-                (draft / "file").write_text("new")
-    assert not contents(tmp_path)
+        assert {draft.parent for draft in others} == {tmp_path / "b"}, "a kill would part them"
 
 
 def test_what_needs_one_rename_has_one(tmp_path, monkeypatch):

@@ -30,7 +30,7 @@ def written_beside(path: str | os.PathLike[str]) -> Iterator[Path]:
 
 @contextmanager
 def all_written_beside(paths: Iterable[str | os.PathLike[str]]) -> Iterator[list[Path]]:
-    """As written_beside, of several files: those of a folder take their places together."""
+    """As written_beside, of several files: all of them take their places, or none does."""
     places = [Path(path) for path in paths]
     first = next(iter(places), Path())
     drafts: dict[Path, Path] = {}
@@ -92,9 +92,8 @@ def written_together(folder: str | os.PathLike[str]) -> Iterator[Path]:
 def all_written_together(folders: Iterable[str | os.PathLike[str]]) -> Iterator[list[Path]]:
     """Yield a draft of each folder; the files of all go to their places, or none does.
 
-    In each folder one rename decides: a program killed before it has written nothing there, one
-    killed after it has written all, which the next that reads or writes there finishes
-    (`drafts.settle`).
+    One rename decides: a program killed before it has written nothing, one killed after it has
+    written all, which the next that reads or writes there finishes (`drafts.settle`).
     """
     wanted = [Path(folder) for folder in folders]
     drafts: dict[Path, Path] = {}

@@ -7,6 +7,7 @@ good as written, and whoever reads or writes there next finishes what was killed
 """
 
 import errno
+import json
 import os
 import re
 import secrets
@@ -15,6 +16,7 @@ import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import Any
 
 from ..ending import undisturbed
 from ..errors import InFile
@@ -28,6 +30,8 @@ _PREFIX = ".zerorate-"
 _MARK = re.compile(r"\.zerorate-[0-9a-f]{16}\.partial")
 _SWITCH = f"{_PREFIX}switch"
 _OLD = f"{_PREFIX}old"
+_OTHERS = f"{_PREFIX}others"
+_LEAD = f"{_PREFIX}lead"
 _PATIENCE_S = 10.0
 _TAKEN = (errno.ENOTEMPTY, errno.EEXIST)
 _Move = tuple[Path, Path]
@@ -65,7 +69,8 @@ def drop(draft: Path) -> None:
 def drop_all() -> None:
     """Remove all that this process has half-written, as it ends now."""
     for draft in list(_mine):
-        drop(draft)
+        if not (draft / _LEAD).exists():  # else it may count as written already
+            drop(draft)
 
 
 def clear_left_over(folder: Path) -> None:
@@ -74,7 +79,7 @@ def clear_left_over(folder: Path) -> None:
     others = [d for d in folder.glob(f"{_PREFIX}*.partial") if d not in _mine and _is_folder(d)]
     for draft in filter(lambda one: _MARK.fullmatch(one.name), others):
         with suppress(OSError), _left_over(draft) as is_left_over:
-            if is_left_over:
+            if is_left_over and _is_of_no_switch(draft):
                 shutil.rmtree(draft, ignore_errors=True)
 
 
@@ -101,27 +106,27 @@ def settle(folder: Path) -> None:
 
 
 def put_in_place(drafts: Sequence[Path]) -> None:
-    """All files of the drafts take their places, those of a draft together.
-
-    Raises OSError, before anything is moved where a place can be seen to be none for a file.
-    """
-    every = [(draft, _moves(draft, draft.parent)) for draft in drafts]
-    for draft, moves in every:
-        if len(moves) == 1:
-            os.replace(*moves[0])
-        elif moves:
-            _switch(draft, moves)
+    """All files of the drafts take their places, or none. Raises OSError, and all is as it was."""
+    moves = [move for draft in drafts for move in _moves(draft, draft.parent)]
+    if len(moves) == 1:
+        os.replace(*moves[0])
+    elif moves:
+        _switch(drafts, moves)
 
 
-def _switch(draft: Path, moves: list[_Move]) -> None:
-    (draft / _OLD).mkdir()
-    olds = [_kept(place, draft / _OLD / str(n)) for n, (_, place) in enumerate(moves)]
-    switch = _committed(draft)
-    moves = [(switch / path.relative_to(draft), place) for path, place in moves]
+def _switch(drafts: Sequence[Path], moves: list[_Move]) -> None:
+    lead, *others = drafts
+    for draft in others:
+        (draft / _LEAD).write_text(json.dumps(os.fspath(lead.parent.resolve())))
+    (lead / _OTHERS).write_text(json.dumps([os.fspath(d.resolve()) for d in others]))
+    (lead / _OLD).mkdir()
+    olds = [_kept(place, lead / _OLD / str(n)) for n, (_, place) in enumerate(moves)]
+    switch = _committed(lead)
+    moves = [(_within(path, lead, switch), place) for path, place in moves]
     done: list[int] = []
     try:
-        for n, move in enumerate(moves):
-            _replace(*move)
+        for n in reversed(range(len(moves))):  # the lead's last: while it is there, all is written
+            _replace(*moves[n])
             done.append(n)
     except OSError:
         for n in reversed(done):
@@ -129,10 +134,10 @@ def _switch(draft: Path, moves: list[_Move]) -> None:
             os.replace(place, path)
             if olds[n]:
                 os.replace(switch / _OLD / str(n), place)
-        os.rename(switch, draft)
+        os.rename(switch, lead)
         raise
     with suppress(FileNotFoundError):  # where there are no locks, another has finished it
-        os.rename(switch, draft)
+        os.rename(switch, lead)
 
 
 def _replace(path: Path, place: Path) -> None:
@@ -141,6 +146,10 @@ def _replace(path: Path, place: Path) -> None:
     except FileNotFoundError:  # where there are no locks, another may have done it
         if os.path.lexists(path) or not os.path.lexists(place):
             raise
+
+
+def _within(path: Path, lead: Path, switch: Path) -> Path:
+    return switch / path.relative_to(lead) if path.is_relative_to(lead) else path
 
 
 def _kept(place: Path, old: Path) -> bool:
@@ -154,13 +163,13 @@ def _kept(place: Path, old: Path) -> bool:
     return True
 
 
-def _committed(draft: Path) -> Path:
+def _committed(lead: Path) -> Path:
     """Where the draft lies from now on: what is in it counts as written."""
-    switch = draft.parent / _SWITCH
+    switch = lead.parent / _SWITCH
     while True:
-        settle(draft.parent)
+        settle(lead.parent)
         try:
-            os.rename(draft, switch)
+            os.rename(lead, switch)
             return switch
         except OSError as error:
             if error.errno not in _TAKEN:
@@ -168,11 +177,40 @@ def _committed(draft: Path) -> Path:
 
 
 def _finish(switch: Path) -> None:
-    for path, place in _moves(switch, switch.parent):
-        _replace(path, place)
+    for draft in (*_others(switch), switch):
+        for path, place in _moves(draft, draft.parent):
+            _replace(path, place)
     done = _new_name(switch.parent)
     os.rename(switch, done)
     shutil.rmtree(done, ignore_errors=True)
+
+
+def _others(switch: Path) -> Iterator[Path]:
+    """The drafts that are of one switch with this one, by what both say."""
+    mine = os.fspath(switch.parent.resolve())
+    for name in _said(switch / _OTHERS) or []:
+        draft = Path(name)
+        if _MARK.fullmatch(draft.name) and _is_folder(draft) and _said(draft / _LEAD) == mine:
+            yield draft
+
+
+def _is_of_no_switch(draft: Path) -> bool:
+    """Whether nobody counts the draft as written, its lead's switch being finished first."""
+    lead = _said(draft / _LEAD)
+    if lead is None:
+        return True
+    try:
+        settle(Path(lead))
+    except InFile:
+        return False
+    return Path(lead).is_dir()
+
+
+def _said(file: Path) -> Any:
+    try:
+        return json.loads(file.read_bytes())
+    except (OSError, ValueError):
+        return None
 
 
 def _moves(draft: Path, folder: Path) -> list[_Move]:

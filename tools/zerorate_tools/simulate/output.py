@@ -29,8 +29,8 @@ def simulate_to_files(
     """Write the recording of each session, or of one; return the files' names.
 
     Several sessions become out-1.parquet, out-2.parquet, ...; the truth is only written where
-    `truth` names a Parquet file for it, numbered likewise. The files of a folder take
-    their places together at the end, or none does. done(1) is called after each session.
+    `truth` names a Parquet file for it, numbered likewise. All files take their places together
+    at the end, or none does. done(1) is called after each session.
     Raises BadDescription, InFile.
     """
     described = load_description(description)
