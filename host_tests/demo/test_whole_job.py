@@ -3,19 +3,13 @@
 What it prints is what docs/commands.md shows: host_tests/package runs it and compares.
 """
 
-import io
 import re
 import shutil
 import socket
-import sys
-from functools import partial
-from hashlib import sha256
-from types import SimpleNamespace
 
-import numpy as np
 import pytest
 from zerorate_tools.cli import main
-from zerorate_tools.demo import broad, demo, story
+from zerorate_tools.demo import broad, demo
 from zerorate_tools.demo.broad import WAYS, real, trials
 from zerorate_tools.errors import CannotFetch, ZerorateError
 from zerorate_tools.recordings import write_recording
@@ -141,66 +135,6 @@ def test_a_damaged_trial_is_fetched_again_and_never_used(filled):
 def test_a_folder_without_a_trial_is_said(tmp_path):
     with pytest.raises(ZerorateError, match="no BROAD trial .* --data"):
         next(trials(tmp_path))
-
-
-class Answer(io.BytesIO):
-    """What requests gives of a server that has a file, or none; in parts of a few bytes."""
-
-    def raise_for_status(self):
-        if not self.getbuffer():
-            raise OSError("404")
-
-    def iter_content(self, size):
-        return iter(partial(self.read, 5), b"")
-
-
-@pytest.mark.parametrize(
-    ("content", "late_s", "said"),
-    [
-        *((b"the whole trial", 0.0, None), (b"another file!", 0.0, "is not the file with SHA")),
-        *((b"", 0.0, "is there a network?"), (b"the whole trial", 200.0, "is there a network?")),
-    ],
-)
-def test_a_trial_is_kept_if_it_is_the_right_one_and_comes_in_time(
-    cache, monkeypatch, content, late_s, said
-):
-    asked, clock = [], iter(np.linspace(0.0, late_s, 4))
-    get = lambda url, **how: asked.append((url, how["stream"])) or Answer(content)  # noqa: E731
-    monkeypatch.setattr("requests.get", get)
-    monkeypatch.setattr(broad, "time", SimpleNamespace(monotonic=lambda: next(clock)))
-    monkeypatch.setattr(broad, "SHA256", sha256(b"the whole trial").hexdigest())
-    kept = cache / "broad" / f"{broad.NAME}.mat"
-    if said is None:
-        assert broad._fetched(NOBODY) == kept and kept.read_bytes() == content
-    else:
-        with pytest.raises(CannotFetch, match=re.escape(said)):
-            broad._fetched(NOBODY)
-        assert not kept.exists()
-    assert asked == [(f"{NOBODY}{broad.NAME}.mat", True)]
-
-
-@pytest.mark.parametrize(
-    ("own", "on_path", "typed"),
-    [
-        ("bin/there", "bin/there", "there"),
-        ("bin/there", "link", "there"),
-        ("bin/there", None, "bin/there"),
-        ("bin/there", "bin/other", "bin/there"),
-        ("bin/none", None, "none"),
-        ("../out/there", None, "{}/out/there"),
-    ],
-)
-def test_a_program_is_named_as_the_shell_finds_it(tmp_path, monkeypatch, own, on_path, typed):
-    for name in ("in/bin/there", "in/bin/other", "out/there"):
-        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / name).touch()
-    (tmp_path / "in" / "link").symlink_to(tmp_path / "in" / "bin" / "there")
-    here = (tmp_path / "in").resolve()
-    monkeypatch.chdir(here)
-    program = (here / own).resolve()
-    monkeypatch.setattr(sys, "executable", str(program.with_name("python")))
-    monkeypatch.setattr(shutil, "which", lambda name: on_path and str(here / on_path))
-    assert story._as_typed(program.name) == typed.format(here.parent)
 
 
 def test_the_firmware_finds_the_bias_that_the_cameras_tell(shown):

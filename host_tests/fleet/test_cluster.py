@@ -8,17 +8,15 @@ import sys
 import textwrap
 import threading
 import time
-from contextlib import nullcontext
 from functools import partial
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
 from distributed import Client
 from zerorate_tools.cli import main
 from zerorate_tools.errors import MissingLibrary, ZerorateError
 from zerorate_tools.fleet import devices_of, fleet
-from zerorate_tools.fleet.cluster import _each, _safe_path, cluster, run_all
+from zerorate_tools.fleet.cluster import _safe_path, cluster, run_all
 from zerorate_tools.fleet.devices import here, size_and_change, urls_of
 from zerorate_tools.recordings import read_recording, write_recording
 
@@ -197,58 +195,6 @@ def test_a_scheduler_that_does_not_answer_is_said(data, tmp_path, monkeypatch):
     monkeypatch.setattr("zerorate_tools.fleet.cluster._CONNECT_S", 0.2)
     with pytest.raises(ZerorateError, match="no Dask scheduler answers"):
         fleet(devices_of([data])[:1], tmp_path, scheduler="tcp://127.0.0.1:9")
-
-
-class ClientByHand:
-    """A client whose tasks end when they are asked for, of a cluster that others started."""
-
-    status, cluster = "running", None
-
-    def __init__(self, workers, ends=()):
-        self.workers, self.ends, self.now_s = iter(workers), list(ends), 100.0
-        self.scheduler = SimpleNamespace(address="tcp://s:1", ncores=self.ncores)
-        self.sleep = lambda seconds: setattr(self, "now_s", self.now_s + 30 * seconds)
-
-    def ncores(self):
-        found = next(self.workers)
-        if isinstance(found, Exception):
-            raise found
-        return dict.fromkeys(found, 1)
-
-    def sync(self, ask, callback_timeout):
-        return ask()
-
-    def count(self):
-        return len(self.ends)
-
-    def has_ready(self):
-        return self.ends[0] is not None or self.ends.pop(0)
-
-    def __next__(self):
-        return self.ends.pop(0)
-
-
-_ENDED, _CANCELLED = (SimpleNamespace(cancelled=lambda of=of: of) for of in (False, True))
-
-
-@pytest.mark.parametrize(
-    ("workers", "ends", "said"),
-    [
-        ([["a"]] * 9, [None] * 9 + [_ENDED], ""),
-        ([[], [], [], ["b"], [], [], []], [None] * 7 + [_ENDED], ""),
-        ([[]] * 4, [None] * 9, r"tcp://s:1: its workers are gone \(a, c\); start them again"),
-        ([["b"], [], [], [], []], [None] * 9, r"its workers are gone \(b\); start them again"),
-        ([OSError()] * 4, [None] * 9, "tcp://s:1: the scheduler is gone; start it again"),
-        ([], [_CANCELLED], "the scheduler is gone"),
-    ],
-)
-def test_a_cluster_is_given_up_ten_seconds_after_its_last_worker(monkeypatch, workers, ends, said):
-    client = ClientByHand(workers, ends)
-    clock = SimpleNamespace(monotonic=lambda: client.now_s, sleep=client.sleep)
-    monkeypatch.setattr("zerorate_tools.fleet.cluster.time", clock)
-    with pytest.raises(ZerorateError, match=said) if said else nullcontext():
-        assert list(_each(client, client, ["a", "c"])) == [_ENDED]
-    assert list(client.workers) == [] and (said or client.ends == [])
 
 
 @pytest.fixture
