@@ -83,7 +83,7 @@ def test_a_failed_check_tells_the_scripts_last_words(runtime):
 
 def test_a_script_that_never_ends_is_stopped(runtime):
     with pytest.raises(ZerorateError, match="stopped after"):
-        runtime.run("while True:\n    pass\n", timeout=2)
+        runtime.run("while True:\n    pass\n", timeout=0.3)
 
 
 def test_allocating_under_heap_lock_is_a_memory_error(micropython):
@@ -132,25 +132,10 @@ def test_a_file_name_outside_the_scratch_folder_is_refused():
             find("cpython").run("\npass\n", files_in={name: b""})
 
 
-LISTED = """
-'http://mirror.example/packages/dists/bookworm/InRelease' x 0
-'http://mirror.example/packages/dists/bookworm/main/binary-amd64/Packages.xz' x 0
-"""
-
-
 @pytest.fixture
 def own_cache(tmp_path, monkeypatch):
     monkeypatch.setenv("ZERORATE_CACHE", str(tmp_path / "cache"))
     return tmp_path / "cache"
-
-
-@pytest.fixture
-def bookworm(monkeypatch):
-    """A machine of that Debian, whose apt lists a mirror of it."""
-    release = {"ID": "debian", "VERSION_CODENAME": "bookworm"}
-    monkeypatch.setattr(platform, "freedesktop_os_release", lambda: release)
-    monkeypatch.setattr(unix_port, "_apt", lambda *_: LISTED)
-    return release
 
 
 def test_the_cache_is_in_the_xdg_folder_when_none_is_named(tmp_path, monkeypatch):
@@ -186,20 +171,6 @@ def test_a_quicker_process_wins(own_cache):
 
     assert (fill(folder, build) / "theirs").is_file()
     assert [path.name for path in folder.parent.iterdir()] == ["x"]
-
-
-@pytest.mark.parametrize("missing", [{"ID": "fedora"}, {"VERSION_CODENAME": ""}])
-def test_a_machine_that_is_not_debian_is_told_so(bookworm, missing):
-    bookworm.update(missing)
-    with pytest.raises(MissingRuntime, match="not Debian"):
-        unix_port.fetch_packages(Path(), "i386", ["micropython"])
-
-
-def test_the_machines_own_mirror_is_used_where_it_has_the_release(bookworm, monkeypatch):
-    assert unix_port._own_mirror() == "http://mirror.example/packages"
-    monkeypatch.setattr(unix_port, "_apt", lambda *_: LISTED.replace("/main/", "/contrib/"))
-    with pytest.raises(MissingRuntime, match="no source for Debian bookworm main"):
-        unix_port._own_mirror()
 
 
 def test_a_missing_apt_is_named(monkeypatch):
@@ -293,39 +264,6 @@ def test_what_a_program_fails_with_is_told_in_one_line(said, told, tmp_path):
     with pytest.raises(MissingRuntime) as error:
         unix_port._output_of([failing])
     assert str(error.value) == f"{failing} failed: {told}"
-
-
-@needs_apt
-def test_one_file_of_a_package_is_unpacked_or_missed(tmp_path):
-    (tmp_path / "p" / "DEBIAN").mkdir(parents=True)
-    control = "Package: p\nVersion: 1\nArchitecture: all\nMaintainer: a <a@b>\nDescription: d\n"
-    (tmp_path / "p" / "DEBIAN" / "control").write_text(control)
-    (tmp_path / "p" / "one").write_text("1")
-    unix_port._output_of(["dpkg-deb", "-b", str(tmp_path / "p"), str(tmp_path / "p.deb")])
-    unix_port.unpack_one(tmp_path / "p.deb", "one", tmp_path)
-    assert (tmp_path / "one").read_text() == "1"
-    with pytest.raises(MissingRuntime, match="p.deb holds no two"):
-        unix_port.unpack_one(tmp_path / "p.deb", "two", tmp_path)
-
-
-@pytest.mark.parametrize("qemu", [None, "qemu-arm"])
-def test_armhf_comes_on_any_processor_with_qemu_where_there_is_none(qemu, monkeypatch):
-    fetched = []
-    monkeypatch.setattr(unix_port, "host_architecture", lambda: "arm64")
-    monkeypatch.setattr(unix_port.shutil, "which", lambda name: qemu)
-    monkeypatch.setattr(unix_port, "fill", lambda folder, build: fetched.append(folder.name))
-    unix_port.fetch_unix_port("armhf")
-    assert fetched == ["armhf-debian13"] + ["qemu-arm-debian13"] * (qemu is None)
-    monkeypatch.setattr(unix_port, "host_architecture", lambda: "amd64")
-    unix_port.fetch_unix_port("x86")
-    assert fetched[-1] == "x86-debian13"
-
-
-def test_an_interpreter_has_all_packages_and_the_link_to_its_loader(tmp_path, monkeypatch):
-    monkeypatch.setattr(unix_port, "fetch_packages", lambda folder, of, names: [of, *names])
-    monkeypatch.setattr(unix_port, "unpack", lambda deb, folder: (folder / deb).touch())
-    unix_port._fetch_interpreter(tmp_path, "armhf")
-    assert {one.name for one in tmp_path.iterdir()} == {"armhf", "lib", *unix_port._PACKAGES}
 
 
 def test_a_missing_node_says_where_it_comes_from(own_cache, monkeypatch):
