@@ -1,102 +1,21 @@
-"""What a fleet's devices have in common: of ten recorded ones, and of parts made by hand."""
+"""What a fleet's devices have in common, of parts made by hand."""
 
-import json
-from contextlib import nullcontext
 from dataclasses import replace
-from pathlib import Path
-from tempfile import TemporaryDirectory
-from unittest import mock
 
 import numpy as np
 import pyarrow as pa
-import pyarrow.parquet as pq
-from zerorate_tools.fleet import Fleet, devices_of, fleet, plots, whole_fleet
-from zerorate_tools.fleet.fleet_in_words import in_words, table_of
+from zerorate_tools.fleet import plots
+from zerorate_tools.fleet.fleet_in_words import table_of
 from zerorate_tools.fleet.job import block_means, error_mdps
 from zerorate_tools.fleet.part import curve_effects, part_of, step_effects
 from zerorate_tools.fleet.population import curve_of
 from zerorate_tools.fleet.prior import _summary, moving_from, prior_json, prior_model
 from zerorate_tools.loop.read.sessions import Session
-from zerorate_tools.recordings import Recording, Scales, write_recording
+from zerorate_tools.recordings import Recording, Scales
 from zerorate_tools.report.page import plain
-from zerorate_tools.simulate import simulate
 
-_STEP = {"effect": "thermal-lag", "verdict": "of the part", "devices": 3, "of_devices": 7,
-         "share_ci95": [0.12, 0.77]}  # fmt: skip
 _FOUND = {"effect": "thermal-lag", "confidence": "confirmed", "before_mdps": [5, 5, 3],
           "after_mdps": [3, 5, 5]}  # fmt: skip
-_LEFT_OUT = [{"file": f"{n}.csv", "reason": f"{n}.csv: no"} for n in range(12)]
-_UNLIKE = {"effect": "slope", "unit": "dps/degC", "mean": [1e-3] * 3, "ci95": [[0, 2e-3]] * 3,
-           "deviation_between_devices": [0.1] * 3, "verdict": ["common"] * 3,
-           "unusual_devices": [*map(str, range(40))]}  # fmt: skip
-_TOLD_ELSE = {
-    "steps": [_STEP],
-    "effects": [_UNLIKE],
-    "reference_degc": 25.0,
-    "failures": _LEFT_OUT,
-    "prior": {"devices": 6, "benefit": None},
-}
-_TOLD_NONE = {"job": "close", "effects": [], "steps": [], "prior": None, "hours": 2000.0,
-                  "failures": _LEFT_OUT[:10]}  # fmt: skip
-
-
-def write_devices(folder, minutes, numbers):
-    """Write `device=NUMBER/session-1.parquet` for each: a warm-up by 12 degC, at rest."""
-    for number in numbers:
-        home = folder / f"device={number:05d}"
-        home.mkdir(parents=True)
-        recording, _ = simulate(_warming(number, minutes))
-        write_recording(recording, home / "session-1.parquet")
-
-
-def _warming(number, minutes):
-    """Device `number` of the part, as `zerorate simulate` takes it. Typical of an MPU-6050: devices
-    differ in level by far more than in how they follow temperature."""
-    rng = np.random.default_rng(number)
-
-    def own(mean, deviation):
-        return (np.array(mean) + deviation * rng.standard_normal(3)).tolist()
-
-    start = float(rng.uniform(20, 26))
-    return {
-        "name": "session-1",
-        "seed": number,
-        "sensor": {"odr_hz": 25.0, "gyro_noise_dps": 0.05, "gyro_noise_at_hz": 100.0},
-        "bias": {
-            "b0": own((0.4, -0.9, 0.2), 1.0),
-            "b1": own((0.025, -0.018, 0.012), 0.006),
-            "b2": own((3e-4, -2e-4, 1e-4), 5e-5),
-        },
-        "noise": {"bias_instability_dps": 0.002},
-        "every_session": {
-            "start_degc": start,
-            "temperature": [{"to": start + 12.0, "tau_s": 60.0, "minutes": minutes}],
-        },
-    }
-
-
-def fleet_of_ten():
-    """Of ten devices' recordings, without a cluster: report and rows, words, what is drawn."""
-
-    def run(client, function, batches):
-        return ((batch, function(batch)) for batch in batches)
-
-    local = {"cluster": lambda *of: nullcontext(), "run_all": run, "size_of": lambda client: 2}
-    with (
-        TemporaryDirectory() as folder,
-        mock.patch.multiple(whole_fleet, **local),
-        mock.patch.object(plots, "rendered", return_value="") as page,
-    ):
-        write_devices(Path(folder, "data"), 1.5, range(10))
-        done = fleet(devices_of([Path(folder, "data")]), Path(folder, "out"), minutes=0.5)
-        rows = pq.read_table(Path(folder, "out", "fleet.parquet"))
-    drawn = json.loads(json.dumps({p.key: plain(p) for p in page.call_args.args[1]}))
-    words = [
-        in_words(Fleet(report, resumed)).splitlines()
-        for resumed, report in enumerate([done.report | of for of in ({}, _TOLD_ELSE, _TOLD_NONE)])
-    ]
-    whole = {"report": done.report, "rows": rows.to_pydict(), "words": sum(words, [])}
-    return whole, drawn | {"headline": page.call_args.kwargs["headline"]}
 
 
 def _device(rng, number, tempered, power_ons, far=10):

@@ -39,17 +39,12 @@ def mostly(luck, usual, *others):
     return usual if luck.random() < 0.8 else others[luck.integers(len(others))]
 
 
-def told(said):
-    """Figures, and what a user is told to type: the words about them are free."""
-    return _TOLD.findall(re.sub(r"/\S+", "", said))
-
-
 def attempt(step, *of):
-    """What a step says, or why it refuses: figures and what to type."""
+    """What a step says, or why it refuses: figures and what to type, the words are free."""
     try:
         return str(step(*of))
-    except (ZerorateError, ValueError) as error:
-        return " ".join(["no:", *told(str(error))])
+    except ZerorateError as error:
+        return " ".join(["no:", *_TOLD.findall(re.sub(r"/\S+", "", str(error)))])
 
 
 def _rows(luck, delimiter, number):

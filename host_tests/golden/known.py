@@ -21,7 +21,6 @@ from zerorate_tools.recordings import Recording, turning, write_recording
 from zerorate_tools.simulate import reference, simulate_sessions
 
 from . import arithmetic, fleets, moved, reported, resting, served, shown, watched
-from .import_logs import LOGS
 from .import_texts import TEXTS
 from .kernels import KERNELS
 
@@ -231,12 +230,6 @@ def compared():
     return flat(figures_of) | pages
 
 
-def fleet_of_ten():
-    """Of ten devices' recordings, without a cluster: report, table, words and plots."""
-    whole, drawn = fleets.fleet_of_ten()
-    return flat(whole) | reported.gathered(drawn)
-
-
 _MADE_FOR = (
     ((), {}),
     ((1000, 16.4, 2048, 333.87), {"window_s": 0.2, "segment_s": 1.0}),
@@ -300,13 +293,11 @@ KNOWN = {
     "moved together": moved_together,
     "turned": turned,
     "compared": compared,
-    "fleet of ten": fleet_of_ten,
     "parts of a fleet": lambda: reported.gathered_plain(fleets.parts_of_a_fleet()),
     "steps found": reported.steps_found,
     "searched two": reported.searched_two,
     "searched one": reported.searched_one,
     **TEXTS,
-    **LOGS,
     "served": served.served,
     "watched": lambda: reported.gathered(watched.watched()),
 }

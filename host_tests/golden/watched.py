@@ -1,4 +1,4 @@
-"""What is shown of a sensor while it is watched or guided: figures and words."""
+"""What is shown of a sensor while it is watched: figures and words."""
 
 import io
 from contextlib import redirect_stdout
@@ -8,9 +8,7 @@ from unittest import mock
 
 import numpy as np
 from rich.console import Console
-from zerorate_tools import guide
 from zerorate_tools.boards.recorder import COLUMNS
-from zerorate_tools.loop.motion.device import Shown
 from zerorate_tools.simulate import simulate
 from zerorate_tools.watch import watching
 from zerorate_tools.watch.live import Live
@@ -113,56 +111,6 @@ def _followed(scales, batches):
     return looked
 
 
-class _Fitted:
-    """Windows that show more of an axis the more of it was turned; of four folds."""
-
-    def __init__(self, information):
-        self.information, self.folds = np.tile(information, 3), np.arange(4)
-        self.rows = SimpleNamespace(errors=np.zeros(guide.LEAST_WINDOWS))
-
-    def shown(self, matrix, fold=None):
-        return Shown(np.diag(self.information), self.information * np.linspace(-1e-2, 2e-2, 9))
-
-    def without(self, matrix, fold):
-        return Shown(
-            self.shown(matrix).normal * np.tile([1, 1 - fold / 9, 1 - fold / 4], 3),
-            (1 - fold / 8) * self.shown(matrix).right,
-        )
-
-
-def _guided():
-    """What is known, asked and noted while one axis after the other is turned."""
-    scales, rng = SimpleNamespace(gyro_lsb_per_dps=100.0), np.random.default_rng(5)
-    known, lines = guide.KnownSoFar(scales), guide.Lines()
-    shows = [
-        None,
-        [1e2, 1e4, 1e5],
-        [1e6, 1e5, 3e6],
-        [1.1e6, 3e6, 1.1e6],
-        [4e6, 5e6, 9e6],
-        [9e7] * 3,
-    ]
-    for number, information in enumerate(shows):
-        fitted = information and _Fitted(np.array(information))
-        t_us = np.arange(0, 3_300_000 if number < 3 else 110_000_000, 100_000) + number * 3_300_000
-        rates = (
-            rng.normal(0, 500, (len(t_us), 3))
-            * np.roll([4.0, 1.0, 0.1], number)
-            / (1 + 999 * (number == 1))
-        )
-        rates[: 2 * (number > 3), 0] = -32768
-        new = {"t_us": t_us, **dict(zip(guide.GYRO, rates.astype(np.int64).T))}
-        with mock.patch.object(guide.KnownSoFar, "_fitted", lambda *of, fitted=fitted: fitted):
-            known.look([{n: c[:9] for n, c in new.items()}, {n: c[9:] for n, c in new.items()}])
-        numbers = [known.matrix, known.sigma, known.confirmed, guide.shares(known.sigma)]
-        yield [
-            *np.concatenate(numbers).tolist(), known.lately_dps.tolist(), known.seconds,
-            known.next_axis, known.clipped, known.all_known, guide.asked(known), guide.notes(known),
-            guide.left(known), guide.unknown(known), _printed(lambda: lines.show(known)),
-            _drawn(guide.Bars, known) if number % 2 else [],
-        ]  # fmt: skip
-
-
 def watched():
-    """All that is watched and guided."""
-    return {**dict(_watched()), "guided": [*_guided()]}
+    """All that is watched."""
+    return dict(_watched())
