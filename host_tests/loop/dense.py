@@ -13,6 +13,7 @@ from zerorate_tools.loop.read.sessions import Session
 from zerorate_tools.model.term import Term
 
 SHAPES = shapes()
+WHITE = SHAPES[:1]
 #: What a grid that allows steep noise takes from it, nats an axis.
 PRIOR = np.array([-3.0 if s.slope else 0.0 for s in SHAPES])
 #: Of waves over the range of a curve, and of their variance, or of what play operators add.
@@ -33,11 +34,6 @@ def made(seed, blocks, gap=(), scale=1.0, names=SOURCES):
     weight = np.ones(blocks)
     rate[list(gap)], weight[list(gap)] = np.nan, 0.0
     return Session(f"s{seed}", 20.0, 1, rate, weight, sources)
-
-
-def is_of_the_few(shape):
-    """Whether it stands for others where many fits are asked for."""
-    return not shape.slope and shape.flicker in (0, 0.2, 1.3) and shape.walk in (0, 0.03, 0.15, 1)
 
 
 def white(seed, blocks, **sources):

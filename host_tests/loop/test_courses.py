@@ -125,12 +125,12 @@ def test_where_few_were_fitted_pieces_of_them_are_left_out_too(few, single, insi
 
 
 def test_pieces_of_a_recording_are_fitted_with_the_others_that_were_fitted(monkeypatch):
-    monkeypatch.setattr(run_kernels, "PiecesByKernels", lambda p, scales, *of, **how: (of, how))
+    monkeypatch.setattr(run_kernels, "PiecesByKernels", lambda p, scales, *of: of)
     monkeypatch.setattr(run_kernels, "PieceRuns", lambda pieces, *of: pieces)
     a, b, c = train = [SimpleNamespace(name=name) for name in "abc"]
     analysis = SimpleNamespace(train=train, single=False, selection=None, motion=InMotion())
     told = run_kernels._by_pieces(analysis, SimpleNamespace(session=b), MPU)
-    assert told == (([a, c],), {"shrunk": True})
+    assert told == ([a, c],)
 
 
 def test_models_are_none_those_of_the_first_effects_and_the_whole_one(supplied):

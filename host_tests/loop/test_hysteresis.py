@@ -11,8 +11,7 @@ from zerorate_tools.loop.fit.regression import Regression, predicted
 from zerorate_tools.loop.fit.single import PiecesByLine
 from zerorate_tools.loop.read.sessions import Session
 from zerorate_tools.loop.search.catalogue import candidates
-from zerorate_tools.loop.search.hysteresis import KIND, best_hysteresis, may_show
-from zerorate_tools.loop.search.likely_hysteresis import of_a_pair
+from zerorate_tools.loop.search.hysteresis import KIND, may_show, of_a_pair, play_operators
 from zerorate_tools.loop.search.select import select, straight_line
 from zerorate_tools.model import Slot, build_model
 from zerorate_tools.model.term import play
@@ -121,17 +120,12 @@ def test_power_ons_show_more_than_one_width():
         ((2.5, 1.2), (3.1, 1.3), (27.4, -0.9), (42.9, -1.5)),
     ],
 )
-def test_the_widths_found_leave_hardly_more_than_the_true_ones(plays):
+def test_operators_of_fixed_widths_stand_for_those_of_any(plays):
     session = recording(DOWN_UP_DOWN, plays=plays, lopsided=0.5)
     line = straight_line([session])
-    beside = (*line, replace(line[0], power=2))
-    many = lambda straight, beside, terms: np.array([float(len(terms))])  # noqa: E731
-    candidate, _ = best_hysteresis([session], line, beside[1:], many)
-    first = candidate.terms[0]
-    true = [replace(first, width=2 * r, power=k) for r, _ in plays for k in (1, 2)]
-    assert fitted_left(session, [*beside, *candidate.terms]) < 1.1 * fitted_left(
-        session, [*beside, *true]
-    )
+    beside = [*line, replace(line[0], power=2)]
+    operators = play_operators([session])
+    assert fitted_left(session, [*beside, *operators]) < 0.1 * fitted_left(session, beside)
 
 
 @pytest.mark.parametrize("seed", [304_000, 304_020])

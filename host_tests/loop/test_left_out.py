@@ -76,7 +76,7 @@ def played(session):
 
 
 @pytest.mark.parametrize(
-    ("names", "groups", "sizes", "few", "how"),
+    ("names", "groups", "sizes", "white", "how"),
     [
         ("bpq", [[1, 2]], ALONE, True, {}),
         ("bpq", [[1, 2]], ALONE, True, {"alike": False}),
@@ -85,12 +85,12 @@ def played(session):
         ("dbc", [[1, 2]], ALONE, False, {"own": slice(1, 3), "alike": False}),
     ],
 )
-def test_weights_are_the_mean_of_their_distribution(names, groups, sizes, few, how):
+def test_weights_are_the_mean_of_their_distribution(names, groups, sizes, white, how):
     sessions = [dense.made(11, 14), dense.made(12, 18, gap=range(6, 12))]
-    shapes = [s for s in dense.SHAPES if dense.is_of_the_few(s)] if few else dense.SHAPES
+    shapes = dense.WHITE if white else dense.SHAPES
     p = dense.problem([*map(played, sessions)], [Term(n) for n in names], shapes_=shapes)
     nats, mean = dense.shrunk(p, groups, sizes, **{"alike": how.get("alike", True)})
-    terms, regression = [PLAYS.get(n, Term(n)) for n in names], Regression(sessions, few=few)
+    terms, regression = [PLAYS.get(n, Term(n)) for n in names], Regression(sessions, white=white)
     g = regression.cross_products(terms)
     told = shrinking.shrink(g, regression.scale, terms, **how)
     assert told.coefficients == pytest.approx(mean, rel=1e-4, abs=1e-7)

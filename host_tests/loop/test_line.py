@@ -8,9 +8,10 @@ import pytest
 from zerorate_tools.loop.fit import line
 from zerorate_tools.loop.fit.free_curve import draw, is_curve, of_any_form, parts
 from zerorate_tools.loop.fit.regression import Regression
-from zerorate_tools.loop.fit.smooth import curve_of, matern, smooth
+from zerorate_tools.loop.fit.smooth import curve_of, matern
+from zerorate_tools.loop.read.sessions import block_basis
 from zerorate_tools.loop.search.selection import deployed as told_by
-from zerorate_tools.model.term import Term, play
+from zerorate_tools.model.term import Term
 
 from . import dense
 from .dense import A, B
@@ -43,6 +44,10 @@ def least_squares(sessions, columns, rates):
     return np.linalg.lstsq(*with_offsets(sessions, columns, rates), rcond=None)[0]
 
 
+def block_columns(terms, session):
+    return np.column_stack([block_basis(t, session) for t in terms])
+
+
 def test_the_line_is_that_of_least_squares_with_an_offset_a_stretch(sessions):
     columns = [np.column_stack([s.sources["temp"] - 25, s.sources["a"]]) for s in sessions]
     expected = least_squares(sessions, columns, [s.rate_dps for s in sessions])
@@ -59,18 +64,13 @@ def test_effects_are_taken_from_the_rates_before_the_line_is_fitted(sessions):
     assert line.ordinary([LINE], sessions, [A], given) == pytest.approx(expected, rel=1e-9)
 
 
-def test_play_operators_are_held_back_by_a_twentythousandth_of_their_own_size(sessions):
-    sessions = [replace(s, sources={**s.sources, "a": s.sources["a"] / 10}) for s in sessions]
-    widths = 0.1, 0.11
-    terms = [LINE, *(replace(A, memory="play", width=w) for w in widths)]
-    columns = [
-        np.column_stack([s.sources["temp"] - 25, *(play(s.sources["a"], w) for w in widths)])
-        for s in sessions
-    ]
-    x, y = with_offsets(sessions, columns, [s.rate_dps for s in sessions])
-    held = np.diag([0.0, *(5e-5 * len(x) * x[:, 1:].var(axis=0))])
-    expected = np.linalg.solve(x.T @ x + held, x.T @ y)
-    assert line.ordinary(terms, sessions) == pytest.approx(expected, rel=1e-6)
+def test_play_operators_are_as_large_as_white_noise_lets_them_be(sessions):
+    terms = [LINE, *(replace(A, memory="play", width=w) for w in (0.1, 1.1))]
+    told = line.shrunk(Regression(sessions, white=True), terms)
+    assert line.ordinary(terms, sessions) == pytest.approx(told)
+    columns = [block_columns(terms, s) for s in sessions]
+    free = least_squares(sessions, columns, [s.rate_dps for s in sessions])
+    assert (np.abs(told[1:]).sum(axis=0) < np.abs(free[1:]).sum(axis=0)).all()
 
 
 @pytest.mark.parametrize(
@@ -130,39 +130,31 @@ def bends(lo=15.0, apart=4.0, number=4):
 
 
 @pytest.mark.parametrize("beside", [[], [A]])
-def test_a_line_that_bends_often_is_the_mean_of_all_curves_by_their_likelihood(sessions, beside):
-    terms = [*beside, *bends()]
-    corners = 15.0 + 4.0 * np.arange(6)
-    at = np.linspace(corners[0], corners[-1], 16)
-    columns, plain = [], 1 + len(beside)
+def test_a_line_that_bends_often_is_the_mean_of_all_curves_by_their_likelihood(beside):
+    sessions = [dense.made(seed, 30, names=("temp", "a")) for seed in (1, 2)]
     for s in sessions:
-        shares = np.column_stack([np.interp(s.sources["temp"], at, u) for u in np.eye(16)])
-        others = [s.sources[t.source] for t in beside]
-        columns.append(np.column_stack([s.sources["temp"], *others, shares]))
-    x, y = with_offsets(sessions, columns, [s.rate_dps for s in sessions])
-    straight, w = x[:, :plain], x[:, plain:]
-    left, waves = (v - straight @ np.linalg.pinv(straight) @ v for v in (y, w))
-    free = len(y) - plain - 3  # offsets: one session, and two stretches
-    nats, curves = [], []
+        s.sources["temp"] = 25 + np.clip(2 * s.sources["temp"], -10.0, 10.0)
+    terms, corners, first = [*beside, *bends()], 15.0 + 4.0 * np.arange(6), len(beside)
+    shares = [
+        np.column_stack([np.interp(s.sources["temp"], corners, u) for u in np.eye(6)])
+        for s in sessions
+    ]
+    told, curves = [], []
     for length in dense.LENGTHS:
-        d = np.sqrt(5) * np.abs(at[:, None] - at) / (length * (at[-1] - at[0]))
-        k = (1 + d + d**2 / 3) * np.exp(-d) + 1e-10 * np.eye(16)
-        assert matern(at, length) == pytest.approx(k)
-        for size in dense.SIZES:
-            v = np.eye(len(y)) + size * waves @ k @ waves.T
-            to = np.linalg.inv(v)
-            squares = np.einsum("na,nm,ma->a", left, to, left)
-            likely = -0.5 * np.linalg.slogdet(v)[1] - 0.5 * free * np.log(squares)
-            nats.append(likely.sum())
-            curves.append(size * k @ waves.T @ to @ left)
-    deviation = dense.by_likelihood(nats, curves)
-    fitted = np.linalg.pinv(straight) @ (y - w @ deviation)
-    curve = deviation + at[:, None] * fitted[0]
-    nearest = np.column_stack([np.interp(at, corners, u) for u in np.eye(6)])
-    heights = np.linalg.lstsq(nearest, curve, rcond=None)[0]
-    slopes = np.diff(heights, axis=0) / 4.0
-    expected = np.vstack([fitted[1:], slopes[:1], np.diff(slopes, axis=0)])
-    assert smooth(terms, curve_of(terms), sessions) == pytest.approx(expected, rel=1e-4, abs=1e-7)
+        root = np.column_stack([corners, np.linalg.cholesky(matern(corners, length))])
+        names = [*(t.source for t in beside), *(f"x{k}" for k in range(7))]
+        both = []
+        for s, share in zip(sessions, shares):
+            own = {f"x{k}": c for k, c in enumerate((share @ root).T)}
+            both.append(replace(s, sources={**s.sources, **own}))
+        p = dense.problem(both, [Term(n) for n in names], shapes_=dense.WHITE)
+        waves = list(range(first + 1, first + 7))
+        nats, mean = dense.shrunk(p, [waves], [(size,) for size in dense.SIZES])
+        told.append(nats)
+        slopes = np.diff(root @ mean[first:], axis=0) / 4.0
+        curves.append(np.vstack([mean[:first], slopes[:1], np.diff(slopes, axis=0)]))
+    expected = dense.by_likelihood(told, curves)
+    # acceleration aside, which data sheets hold back
     assert line.ordinary(terms, sessions) == pytest.approx(expected, rel=1e-4, abs=1e-7)
 
 

@@ -126,17 +126,10 @@ def test_what_moves_along_the_slope_alone_may_be_a_coarse_thermometer_s(
     assert told is explained
 
 
-def test_forms_of_a_hysteresis_have_one_to_four_operators_without_and_with_squares(monkeypatch):
-    fits = SimpleNamespace(best=lambda *of: of, terms=lambda best, powers: best)
-    monkeypatch.setattr(hysteresis, "_Fits", lambda sessions, beside: fits)
-    every = [(number, powers) for powers in ((1,), (1, 2)) for number in (1, 2, 3, 4)]
-    assert list(hysteresis._forms([], [])) == every
-    bare = [replace(dense.made(1, 60), sources={})]
-    assert hysteresis.best_hysteresis(bare, [], [], None) == (None, 0.0)
-    assert hysteresis.of_one_recording(SimpleNamespace(sessions=bare), [], [()], [], None, 0) == (
-        None,
-        "",
-    )
+def test_no_temperature_shows_no_hysteresis():
+    bare = SimpleNamespace(sessions=[replace(dense.made(1, 60), sources={})])
+    assert hysteresis.likeliest(bare, []) == (None, 0.0)
+    assert hysteresis.of_one_recording(bare, [], (), [], None, 0) == (None, "")
 
 
 # --- the whole search ---
@@ -182,7 +175,7 @@ def test_a_sum_of_play_operators_takes_the_place_of_what_remembers_if_it_is_like
         return evidence
 
     room = lambda terms, taken: fits and terms == [*VOLTS.terms, *LOOP.terms]  # noqa: E731
-    monkeypatch.setattr(select, "likeliest", told)
+    monkeypatch.setattr(hysteresis, "likeliest", told)
     monkeypatch.setattr(select, "evidence", told)
     monkeypatch.setattr(select, "fits_in_slots", room)
     search._widen_hysteresis()
@@ -208,9 +201,10 @@ def test_a_recording_alone_is_asked_for_a_hysteresis_first(
 ):
     bend, judged, said = BEND.terms, object(), (loop and found(loop), "" if loop else "as well")
     every = POOL if again else [c for c in POOL if c not in (DRIFT, START)]
-    pair, alone = (bend, every, 5), ([(), bend, bend], every, judged, 5)
+    pair, alone = (bend, every, 5), (bend, every, judged, 5)
     monkeypatch.setattr(curve, "LEAST_OF_A_PIECE", 12 / curve.PIECES)
-    monkeypatch.setattr(select, "of_a_pair", lambda r, line, *of: again and of == pair and said)
+    two = lambda r, line, *of: again and of == pair and said  # noqa: E731
+    monkeypatch.setattr(hysteresis, "of_a_pair", two)
     one = lambda r, line, *of: not again and of == alone and said  # noqa: E731
     monkeypatch.setattr(hysteresis, "of_one_recording", one)
     monkeypatch.setattr(curve, "smooth_curve", lambda made, line, n: ["curve"] * (n == 5))

@@ -23,10 +23,10 @@ _FEW, _MOST_KEPT_BYTES = 64, 100_000_000
 class Whitener:
     """The spectra of one session's noise, and its columns' cross products under each of them."""
 
-    def __init__(self, available: np.ndarray, few: bool = False):
+    def __init__(self, available: np.ndarray):
         self.available = available
         self.n = len(available)
-        self.spectrum = noise.spectra(self.n)[noise.FEW if few else slice(None)]
+        self.spectrum = noise.spectra(self.n)
         self.weight = 1.0 / self.spectrum
         self.logdet = np.log(self.spectrum).sum(axis=1)
         self.coefficients = int(available.sum()) - 1
@@ -59,8 +59,8 @@ class GappyWhitener(Whitener):
     colour.
     """
 
-    def __init__(self, available: np.ndarray, few: bool = False):
-        super().__init__(available, few)
+    def __init__(self, available: np.ndarray):
+        super().__init__(available)
         # (n, n - 1) without a mean: what is left of n blocks when their offset is free
         self._keep = noise.transform(np.eye(self.coefficients + 1)).T
         part = noise.transform(np.eye(self.n))[:, available] @ self._keep
@@ -120,15 +120,29 @@ class BridgedWhitener(Whitener):
         return noise.transform(np.column_stack(filled)) if filled else np.zeros((self.n - 1, 0))
 
 
-_KNOWN: WeakValueDictionary[tuple[bytes, bool], Whitener] = WeakValueDictionary()
+class WhiteWhitener(Whitener):
+    """The same under white noise alone: least squares, with an offset of what is there."""
+
+    def __init__(self, available: np.ndarray):
+        self.available = available
+        self.coefficients = int(available.sum()) - 1
+        self.spectrum = self.weight = np.ones((1, self.coefficients + 1))
+        self.logdet = np.zeros(1)
+
+    def prepare(self, columns: np.ndarray) -> np.ndarray:
+        there = columns[self.available]
+        return there - there.mean(axis=0)
 
 
-def whitener(available: np.ndarray, few: bool = False) -> Whitener:
-    """The cheapest one that the gaps allow; the same again while anyone holds it. few: colours."""
-    key = available.tobytes(), few
+_KNOWN: WeakValueDictionary[bytes, Whitener] = WeakValueDictionary()
+
+
+def whitener(available: np.ndarray) -> Whitener:
+    """The cheapest one that the gaps allow; the same again while anyone holds it."""
+    key = available.tobytes()
     known = _KNOWN.get(key)
     if known is None:
-        known = _KNOWN[key] = _new(available)(available, few)
+        known = _KNOWN[key] = _new(available)(available)
     return known
 
 

@@ -1,10 +1,6 @@
 """A curve of any form over one source, as smooth as the recordings say.
 
-A straight line and a smooth deviation from it, as a Gaussian process of Matern's covariance (5/2)
-has it, at the nine points that the board holds. How large and how long its waves are, and the
-colour of the noise, is weighed by what the recordings make of it (restricted likelihood); the curve
-is the mean over all of them (`fit/shrunk.py`; Rasmussen and Williams, Gaussian Processes for
-Machine Learning, 2006, 2.7).
+It is told at the nine points that the board holds (`fit/smooth.py`).
 """
 
 from collections.abc import Sequence
@@ -16,8 +12,7 @@ from ...model.model import TABLE_POINTS
 from ...model.term import Term, Terms
 from ..read.sessions import Session, block_basis
 from .regression import Regression
-from .shrunk import shrink
-from .smooth import LENGTHS, by_likelihood, matern
+from .smooth import LENGTHS, averaged, matern
 
 #: Share of the variance of a curve that the parts by which it is looked for carry.
 _MOST = 0.9
@@ -54,7 +49,9 @@ def draw(regression: Regression, beside: Terms, term: Term) -> tuple[Term, float
     axes; and the share of the squares that is lost where these follow curves of different forms."""
     each = [replace(term, table=tuple(point.tolist())) for point in np.eye(TABLE_POINTS)]
     with regression.in_sensor_axes():
-        values = _values(regression, beside, each)
+        every, at = [*beside, *each], np.linspace(-1.0, 1.0, TABLE_POINTS)
+        fitted = averaged(regression, every, len(beside), at, np.eye(TABLE_POINTS), alike=False)
+    values = fitted[len(beside) :]
     squares, axes = np.linalg.eigh(values.T @ _products(each, regression.sessions) @ values)
     form = values @ axes[:, -1]
     least, most = form.min(), form.max()
@@ -62,22 +59,6 @@ def draw(regression: Regression, beside: Terms, term: Term) -> tuple[Term, float
         return term, 0.0
     table = np.clip((2 * form - least - most) / (most - least), -1, 1)
     return replace(term, table=tuple(table.tolist())), float(squares[:-1].sum() / squares.sum())
-
-
-def _values(regression: Regression, beside: Terms, each: Terms) -> np.ndarray:
-    """(points, 3) dps of the curve at its points."""
-    at = np.linspace(-1.0, 1.0, len(each))
-    every = [*beside, *each]
-    g, first = regression.cross_products(every), len(beside)
-    own = slice(first + 1, first + 1 + len(each))
-    told, curves = [], []
-    for length in LENGTHS:
-        root = np.column_stack([at, np.linalg.cholesky(matern(at, length))])
-        columns = [*beside, each[0], *each]
-        said = shrink(g.mapped(first, root), regression.scale, columns, own, alike=False)
-        told.append(said.nats)
-        curves.append(root @ said.coefficients[first : first + root.shape[1]])
-    return by_likelihood(told, curves)
 
 
 def _products(each: Terms, sessions: Sequence[Session]) -> np.ndarray:

@@ -64,7 +64,7 @@ class Base:
 
 
 def _loglik(rss: np.ndarray, logdet: np.ndarray, count: int, scale_term: float) -> np.ndarray:
-    prior = LOG_PRIOR.reshape(-1, *[1] * (rss.ndim - 1))
+    prior = LOG_PRIOR[: len(rss)].reshape(-1, *[1] * (rss.ndim - 1))
     return prior - 0.5 * count * np.log(np.maximum(rss, 1e-300) / count) - 0.5 * logdet - scale_term
 
 

@@ -6,17 +6,15 @@ before and after are both judged with an ordinary least-squares line on the rate
 """
 
 from collections.abc import Callable, Collection, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from ...model.term import Term, Terms
-from ..read.sessions import Session, block_basis
-from .regression import Regression, is_of_force, of_data_sheets, predicted
-from .shrunk import shrink
+from ..read.sessions import Session
+from .regression import Regression, predicted
+from .shrunk import has_play_operators, shrink
 from .smooth import curve_of, smooth
-
-#: Of the squared coefficients of play operators, in units of their columns, per block.
-_RIDGE = 5e-5
 
 
 def is_slope(term: Term) -> bool:
@@ -38,28 +36,23 @@ def ordinary(
     coefficients: Collection[np.ndarray] = (),
 ) -> np.ndarray:
     """(terms, 3) dps per unit by least squares over blocks, an offset a session, effects subtracted
-    first; play operators, which are much alike, are shrunk a little, acceleration by data sheets as
-    if all that is to be explained were noise, and bends made smooth.
+    first. Play operators and bends are as large as is likely, acceleration as data sheets have it
+    if all that is to be explained were noise.
     """
-    curve = curve_of(terms)
+    if len(effects):
+        sessions = [
+            replace(s, rate_dps=s.rate_dps - predicted(effects, coefficients, s)) for s in sessions
+        ]
+    shown = [s for s in sessions if s.available.any()]
+    if not shown:
+        return np.zeros((len(terms), 3))
+    regression, curve = Regression(shown, white=True), curve_of(terms)
+    regression.heed_data_sheets(())
     if curve and not len(effects):
-        return smooth(terms, curve, sessions)
-    x, y = [], []
-    for s in sessions:
-        there = s.available
-        rate = s.rate_dps - (predicted(effects, coefficients, s) if len(effects) else 0.0)
-        columns = np.column_stack([block_basis(t, s) for t in terms])
-        x.append(s.less_offsets(columns, there)[there])
-        y.append(s.less_offsets(rate, there)[there])
-    scale = np.vstack(x).std(axis=0)
-    scale[scale == 0] = 1.0  # nothing was seen of it
-    rows, known = sum(map(len, x)), of_data_sheets(float(np.vstack(y).var()))
-    plays = np.array([t.memory == "play" for t in terms])
-    precision = plays * rows * _RIDGE * scale**2 + [known * is_of_force(t) for t in terms]
-    if rows and precision.any():
-        x.append(np.diag(np.sqrt(precision)))
-        y.append(np.zeros((len(terms), 3)))
-    return np.linalg.lstsq(np.vstack(x) / scale, np.vstack(y), rcond=1e-12)[0] / scale[:, None]
+        return smooth(regression, terms, curve)
+    if has_play_operators(terms):
+        return shrunk(regression, terms)
+    return regression.fit(terms).coefficients
 
 
 def shrunk(regression: Regression, terms: Terms) -> np.ndarray:

@@ -39,12 +39,6 @@ IS_STEEP = np.array([bool(s.slope) for s in GRID])
 #: Odds of twenty to one, as a difference of log likelihoods: by less nothing is told from what
 #: competes with it. Steep noise, which can stand for any smooth effect, starts so far behind.
 NATS = 3.0
-#: Rows of the grid that stand for all that is not steep, where many fits are asked for.
-FEW = [
-    i
-    for i, s in enumerate(GRID)
-    if s.flicker in (0.0, 0.2, 1.3) and s.walk in (0.0, 0.03, 0.15, 1.0) and not s.slope
-]
 LOG_PRIOR = -NATS * IS_STEEP
 
 

@@ -12,7 +12,7 @@ from scipy.ndimage import median_filter
 from ...allan import Noise
 from ...model.term import Term, Terms
 from ..read.sessions import Session, block_basis
-from .cross_products import CrossProducts, cross_products, whitener
+from .cross_products import CrossProducts, Whitener, WhiteWhitener, cross_products, whitener
 from .likelihood import Base, fit_base, ratios, session_scale
 from .noise import GRID, IS_STEEP
 
@@ -44,13 +44,14 @@ class Regression:
     """Residuals of some sessions and the cached columns of every term asked for.
 
     Axes are scaled by their noise and perhaps turned (`axes`, (3, 3): turned = rate @ axes.T), so
-    that a cause common to them does not count three times. few: only some colours of the noise, for
-    fits that weigh them all (`fit/shrunk.py`).
+    that a cause common to them does not count three times. white: the noise is white, as the
+    firmware's estimators have it: all that is left counts alike.
     """
 
-    def __init__(self, sessions: list[Session], few: bool = False):
+    def __init__(self, sessions: list[Session], white: bool = False):
         self.sessions = sessions
-        self.whiteners = [whitener(s.available, few) for s in sessions]
+        of = WhiteWhitener if white else whitener
+        self.whiteners: list[Whitener] = [of(s.available) for s in sessions]
         self.rate = [s.rate_dps for s in sessions]
         self.outliers = 0
         self.axes = np.eye(3)

@@ -116,7 +116,7 @@ class _Axis:
         free = self.count - (~shrunk).sum()
         likely = 0.5 * np.log(precision[shrunk]).sum() - 0.5 * free * np.log(left)
         likely -= np.log(np.einsum("gjj->gj", factor)).sum(axis=1) + 0.5 * self.logdet
-        likely += LOG_PRIOR if len(likely) == len(LOG_PRIOR) else 0.0
+        likely += LOG_PRIOR[: len(likely)]
         top = likely.max()
         weight = np.exp(likely - top)
         return float(top + np.log(weight.sum())), weight @ fitted / weight.sum()

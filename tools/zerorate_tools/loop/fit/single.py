@@ -19,7 +19,7 @@ from ...model.effects import is_free
 from ...model.term import Term, Terms, play
 from ..read.sessions import Session
 from .free_curve import draw
-from .line import by_axis, ordinary, shrunk, with_line
+from .line import by_axis, ordinary, with_line
 from .regression import Regression, predicted
 from .shrunk import has_play_operators
 
@@ -91,7 +91,7 @@ class PiecesByLine:
     Ordinary least squares with one offset for all pieces, as they are of one power-on, beside a
     straight line; for recordings that the firmware's own kernels cannot be run over. beside: other
     recordings of the device, to which every turn is fitted as well; hold: whether a bend is held at
-    the edges of what a turn is fitted to; shrunk: whether play operators are as large as is likely.
+    the edges of what a turn is fitted to.
     """
 
     reason = "does not predict the pieces left out"
@@ -101,9 +101,8 @@ class PiecesByLine:
         session: Session,
         beside: Sequence[Session] = (),
         hold: bool = True,
-        shrunk: bool = False,
     ) -> None:
-        self.session, self.beside, self.hold, self.shrunk = session, beside, hold, shrunk
+        self.session, self.beside, self.hold = session, beside, hold
         self._leave_out(fold_of(session))
 
     def by_passes(self) -> PiecesByLine:
@@ -176,14 +175,12 @@ class PiecesByLine:
         kept = [held(t, fitted) if hold and is_instant(t) else t for t in terms]
         for i in [i for i, t in enumerate(kept) if is_free(t)]:
             beside = [*straight, *kept[:i], *kept[i + 1 :]]
-            kept[i], _ = draw(Regression(fitted, few=True), beside, kept[i])
+            kept[i], _ = draw(Regression(fitted, white=True), beside, kept[i])
         every = [*straight, *kept]
         if not every:
             return [], np.zeros((0, 3))
         each = np.ones((len(kept), 3)) if applied is None else applied
         fit = partial(ordinary, sessions=fitted)
-        if plays and self.shrunk:
-            fit = partial(shrunk, Regression(fitted, few=True))
         return every, by_axis(fit, every, with_line(straight, terms, each))
 
     def _squares(self, left: np.ndarray) -> np.ndarray:

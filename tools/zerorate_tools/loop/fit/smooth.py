@@ -1,11 +1,10 @@
-"""A line over temperature that bends often, as smooth as the recording says.
+"""Curves as smooth as the recordings say.
 
-By least squares so many bends follow the noise. Here the curve is a straight line and a smooth
-deviation from it, as a Gaussian process of Matern's covariance (5/2) has it: how large and how long
-its waves are is weighed by what the data make of it (restricted likelihood, white noise of each
-axis, the waves alike on all three), and the curve is the mean over all of them, not the likeliest
-(Rasmussen and Williams, Gaussian Processes for Machine Learning, 2006, 2.7 and 4.2.1). The slots'
-line is the one nearest to that curve.
+By least squares many bends follow the noise. Here a curve is a straight line and a smooth deviation
+from it, as a Gaussian process of Matern's covariance (5/2) has it: how large and how long its waves
+are, and the colour of the noise, is weighed by what the recordings make of it (restricted
+likelihood), and the curve is the mean over all of them, not the likeliest (`fit/shrunk.py`;
+Rasmussen and Williams, Gaussian Processes for Machine Learning, 2006, 2.7 and 4.2.1).
 """
 
 from collections.abc import Sequence
@@ -14,15 +13,12 @@ from dataclasses import replace
 import numpy as np
 
 from ...model.term import Terms
-from ..read.sessions import Session, block_basis
 from .likelihood import TINY
-from .regression import is_of_force, of_data_sheets
-from .shrunk import SIZES
+from .regression import Regression
+from .shrunk import shrink
 
-#: Lengths of the waves, of the range of temperature.
+#: Lengths of the waves, of the range of the curve.
 LENGTHS = (0.05, 0.1, 0.2, 0.4, 0.8)
-#: Points at which the curve is computed, a segment of the line.
-_POINTS = 3
 
 
 def curve_of(terms: Terms) -> list[int]:
@@ -36,79 +32,45 @@ def curve_of(terms: Terms) -> list[int]:
     return []
 
 
-def smooth(terms: Terms, own: Sequence[int], sessions: Sequence[Session]) -> np.ndarray:
-    """(terms, 3) dps per unit by least squares, an offset a session, those of a slope and its bends
-    (`curve_of`) by the curve nearest to which they are."""
-    corners = _corners([terms[i] for i in own])
-    at = np.linspace(corners[0], corners[-1], _POINTS * (len(corners) - 1) + 1)
-    beside = [i for i in range(len(terms)) if i not in own]
-    curve, others = _curve(at, [terms[i] for i in beside], sessions)
-    heights = np.linalg.lstsq(_between(at, corners), curve, rcond=None)[0]
-    slopes = np.diff(heights, axis=0) / np.diff(corners)[:, None]
+def smooth(regression: Regression, terms: Terms, own: Sequence[int]) -> np.ndarray:
+    """(terms, 3) dps per unit, those of a slope and its bends (`curve_of`) by a curve between its
+    corners."""
+    knots = terms[own[0]].centre + np.array([terms[i].knot for i in own[1:]])
+    apart = knots[1] - knots[0]
+    corners = np.r_[knots[0] - apart, knots, knots[-1] + apart]
+    slopes = np.diff(np.eye(len(corners)), axis=0) / apart
+    order = [*(i for i in range(len(terms)) if i not in own), *own]
+    some, first = [terms[i] for i in order], len(terms) - len(own)
     out = np.empty((len(terms), 3))
-    out[own], out[beside] = np.vstack([slopes[:1], np.diff(slopes, axis=0)]), others
+    out[order] = averaged(
+        regression, some, first, corners, np.vstack([slopes[:1], np.diff(slopes, axis=0)])
+    )
     return out
 
 
-def _corners(terms: Terms) -> np.ndarray:
-    """(terms + 1,) degC at which the segments begin and end."""
-    knots = terms[0].centre + np.array([t.knot for t in terms[1:]])
-    apart = knots[1] - knots[0]
-    return np.r_[knots[0] - apart, knots, knots[-1] + apart]
+def averaged(
+    regression: Regression,
+    terms: Terms,
+    first: int,
+    at: np.ndarray,
+    by: np.ndarray,
+    alike: bool = True,
+) -> np.ndarray:
+    """(terms, A) coefficients; those from the first on are of one curve.
 
-
-def _between(degc: np.ndarray, at: np.ndarray) -> np.ndarray:
-    """(n, points) shares of the points between which each temperature lies."""
-    return np.column_stack([np.interp(degc, at, unit) for unit in np.eye(len(at))])
-
-
-def _curve(
-    at: np.ndarray, beside: Terms, sessions: Sequence[Session]
-) -> tuple[np.ndarray, np.ndarray]:
-    """(points, 3) dps of the straight line and a smooth deviation from it, and (terms, 3) dps per
-    unit of what is beside."""
-    x, y = [], []
-    for s in sessions:
-        degc, there = s.block_mean(s.source("temp")), s.available
-        columns = [degc, *(block_basis(t, s) for t in beside), _between(degc, at)]
-        x.append(s.less_offsets(np.column_stack(columns), there)[there])
-        y.append(s.less_offsets(s.rate_dps, there)[there])
-    every, rates, plain = np.vstack(x), np.vstack(y), 1 + len(beside)
-    free = len(rates) - plain - sum(1 + len(s.steps) for s in sessions)
-    scale = every[:, :plain].std(axis=0)
-    scale[scale == 0] = 1.0  # nothing was seen of it
-    line, shares = every[:, :plain] / scale, every[:, plain:]
-    own = np.linalg.qr(line)[0]
-    left, waves = (v - own @ (own.T @ v) for v in (rates, shares))
-    deviation = _deviation(at, waves, left, free)
-    rest = rates - shares @ deviation
-    known = of_data_sheets(float(rates.var()))
-    precision = np.array([0.0, *(known * is_of_force(t) for t in beside)])
-    line = np.vstack([line, np.diag(np.sqrt(precision) / scale)])
-    rest = np.vstack([rest, np.zeros((plain, 3))])
-    fitted = np.linalg.lstsq(line, rest, rcond=1e-12)[0] / scale[:, None]
-    return deviation + at[:, None] * fitted[0], fitted[1:]
-
-
-def _deviation(at: np.ndarray, waves: np.ndarray, left: np.ndarray, free: int) -> np.ndarray:
-    """(points, 3) dps: the mean over all lengths and sizes of the waves, by their likelihood.
-
-    waves: (blocks, points) of what a deviation of 1 at a point adds; left: (blocks, 3) of the
-    rates; free: blocks less what was fitted already.
+    by: (terms of the curve, points) coefficients of them, for a curve of 1 at one of its points at
+    (points,) and 0 at the others; alike: whether its waves are of one size on all axes.
     """
-    told, curves = [], []
+    g, own = regression.cross_products(terms), slice(first + 1, first + 1 + len(at))
+    columns = [*terms[:first], *[terms[first]] * (1 + len(at))]
+    told, fitted = [], []
     for length in LENGTHS:
-        root = np.linalg.cholesky(matern(at, length))
-        u, d, v = np.linalg.svd(waves @ root, full_matrices=False)
-        own = u.T @ left
-        rest = (left**2).sum(axis=0) - (own**2).sum(axis=0)
-        for size in SIZES:
-            grows = 1.0 + size * d**2
-            squares = rest + (own**2 / grows[:, None]).sum(axis=0)
-            likely = -0.5 * np.log(grows).sum() - 0.5 * free * np.log(squares + 1e-300)
-            told.append(likely.sum())
-            curves.append(root @ v.T @ ((size * d / grows)[:, None] * own))
-    return by_likelihood(told, curves)
+        root = by @ np.column_stack([at, np.linalg.cholesky(matern(at, length))])
+        said = shrink(g.mapped(first, root), regression.scale, columns, own, alike)
+        told.append(said.nats)
+        waves = said.coefficients[first : first + root.shape[1]]
+        fitted.append(np.vstack([said.coefficients[:first], root @ waves]))
+    return by_likelihood(told, fitted)
 
 
 def by_likelihood(nats: Sequence[float], curves: Sequence[np.ndarray]) -> np.ndarray:

@@ -17,7 +17,6 @@ from .catalogue import Candidate, ranges
 from .catalogue import candidates as all_candidates
 from .drift_test import follows_time
 from .examine import Examiner
-from .likely_hysteresis import likeliest, of_a_pair
 from .multiple_testing import MultipleTesting, smallest_dps
 from .naming import name_found
 from .refine import drawn, refined
@@ -135,9 +134,9 @@ class Search:
             return
         self.forms, bend = [c for c in every if c.kind in curve.FORMS], curve.powers(every)
         if self.judged_again:
-            found, refused = of_a_pair(r, self.line, bend, every, self.taken)
+            found, refused = hysteresis.of_a_pair(r, self.line, bend, every, self.taken)
         else:
-            asked = self.line, [(), bend[:1], bend], every, judged, self.taken
+            asked = self.line, bend, every, judged, self.taken
             found, refused = hysteresis.of_one_recording(r, *asked)
         if found:
             self.found, self.kept = [found], 1
@@ -162,7 +161,7 @@ class Search:
         before, self.found = self.found, [f for f in self.found if f not in own]
         simpler = [t for f in own for t in f.candidate.terms]
         beside = [*self.straight, *self.terms()]
-        candidate, gain = likeliest(self.regression, beside)
+        candidate, gain = hysteresis.likeliest(self.regression, beside)
         lost = evidence(self.regression, beside, simpler) - gain
         found = None
         if candidate and lost < 0:

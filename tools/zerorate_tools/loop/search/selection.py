@@ -141,8 +141,8 @@ def deployed(selection: Selection, effects: bool = True) -> tuple[list[Term], np
 
 def _fit_of(selection: Selection) -> Callable[[Terms], np.ndarray]:
     regression = selection.regression
-    if has_play_operators(selection.terms) and not selection.stands_alone:
-        return lambda terms: shrunk(regression, terms)
     if selection.alone:
         return lambda terms: ordinary(terms, regression.sessions)
+    if has_play_operators(selection.terms):
+        return lambda terms: shrunk(regression, terms)
     return lambda terms: regression.fit(terms).coefficients

@@ -35,9 +35,8 @@ class PiecesByKernels(PiecesByLine):
         power_on: PowerOn,
         scales: Scales,
         beside: Sequence[Session] = (),
-        shrunk: bool = False,
     ) -> None:
-        super().__init__(power_on.session, beside, shrunk=shrunk)
+        super().__init__(power_on.session, beside)
         self.power_on, self._scales = power_on, scales
 
     def residual(

@@ -97,7 +97,7 @@ def _course_of(
 
 def _by_pieces(analysis: Analysis, power_on: PowerOn, scales: Scales) -> PieceRuns:
     beside = [s for s in analysis.train if s.name != power_on.session.name]
-    pieces = PiecesByKernels(power_on, scales, beside, shrunk=not analysis.single)
+    pieces = PiecesByKernels(power_on, scales, beside)
     return PieceRuns(pieces, analysis.selection, slots_of(analysis.motion))
 
 
