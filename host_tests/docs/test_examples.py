@@ -26,7 +26,7 @@ HERE = Path(__file__).parent
 SHOWN = {
     "faults.md": [],
     "wiring.md": [],
-    "pico.md": ["main.py", "yaw.py", "keep.py", "interrupt.py", "pins.py"],
+    "pico.md": ["main.py", "keep.py", "interrupt.py", "pins.py"],
     "raspberry-pi.md": ["raspberry_pi.py"],
     "linux-service.md": [],
     "any-imu.md": ["bmi160.py", "lsm6dso.py", "bmi270.py"],

@@ -56,16 +56,6 @@ RMS over axes and over means of 20 s. The true rate is zero, but for Earth's 4 m
 which the sensor was handled are left out. The first figure is of the whole recording, the second
 without its first 20 s (8 readings).
 """
-# `make docs` fills the table in
-_MOTION = """\
-## Real motion
-
-The error at the end of two minutes in the hand. `zerorate bench real-motion` measures it
-([each trial](real-motion.md)). A "cold" recording starts in motion, without a rest before it.
-
-<!-- table 1 of real-motion.md -->
-<!-- end -->
-"""
 BLOCK_S = 20.0
 _START_READINGS = 8
 _HANDLED = 3.0
@@ -164,7 +154,7 @@ def run(quick: bool, advance: Callable[[float], None]) -> dict[str, Any]:
 def in_markdown(found: Mapping[str, Any]) -> str:
     limits = limits_table(found["limits"])
     return "\n".join(
-        ["# Accuracy\n", _MADE, machine_line(found["machine"]), limits, *sections(found), _MOTION]
+        ["# Accuracy\n", _MADE, machine_line(found["machine"]), limits, *sections(found)]
     )
 
 

@@ -273,7 +273,7 @@ def model() -> bytes:
 
 
 def second_program() -> str:
-    """The text of docs/pico.md's second program."""
+    """The text of the example that keeps what it learned."""
     checkout = firmware_package().parents[1]
     return (checkout / _PROGRAM).read_text(encoding="utf-8")
 

@@ -85,14 +85,15 @@ run `make FROZEN_MANIFEST=FILE`. FILE, by its full path, has two lines:
 emulated Pico it gave the same numbers in every mode, to the last bit. `zerorate bench boards`
 compares it if it is `firmware/FROZEN-1.28.0.bin` in the folder that ZERORATE_BOARDS names.
 
-## The heap of the second program
+## The heap of a program that keeps what it learned
 
-The second program of [pico.md](pico.md) runs in {least_heap:,} bytes of heap; the bench's limit is
-49,152 bytes. Saving opens a file, and power-on reads a record in pieces of 64 bytes. Both take
-heap for a short time and leave gaps. MicroPython never frees a name. So `zerorate flash` sends
-private names as `_a`, `_b`, the same few in every file, and another module's constants as numbers.
-The machine code is compiled for size, except for what every sample runs through. The checkpoint
-makes a brown-out of the chip harmless. In a frozen image, bytecode and most names take no heap.
+`examples/keep.py` ([pico.md](pico.md#keep-what-was-learned)) runs in {least_heap:,} bytes of heap;
+the limit is 49,152 bytes. Saving opens a file, and power-on reads a record in pieces of 64 bytes.
+Both take heap for a short time and leave gaps. MicroPython never frees a name. So `zerorate flash`
+sends private names as `_a`, `_b`, the same few in every file, and another module's constants as
+numbers. The machine code is compiled for size, except for what every sample runs through. The
+checkpoint makes a brown-out of the chip harmless. In a frozen image, bytecode and most names take
+no heap.
 """
 
 

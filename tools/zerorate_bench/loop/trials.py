@@ -16,7 +16,6 @@ from zerorate_tools.recordings import Recording, Scales, write_recording
 from ..children import close_cost
 from ..public_data import data_folder
 from ..tables import machine, machine_line, outcomes, table
-from . import real
 from .devices import Device, devices
 from .figures import Figure, figures
 from .files import ROWS, file_devices, look_at_files
@@ -142,8 +141,6 @@ def run(
         found += figures_of(close_cost(_WRITE))
     result: dict[str, Any] = {"devices": len(seen), "machine": machine()}
     result["cpu_s_a_device"] = sum(o.cpu_s for o in seen) / max(len(seen), 1)
-    if folder and folder.is_dir() and not rows:
-        result["real_recordings"] = real.run(folder)
     result["figures"] = [f.to_dict() for f in found]
     result["false_alarms"] = _examples(seen)
     return result
@@ -181,8 +178,6 @@ def in_markdown(result: dict[str, Any]) -> str:
     parts = [head_line, "", "`zerorate bench loop` wrote this page. " + machine_line()]
     parts += [f"{head}: {'; '.join(missed)}." if missed else "Every figure is reached.", ""]
     parts.append(figure_table(result["figures"]))
-    if "real_recordings" in result:
-        parts += ["## Real recordings", "", real.recordings_table(result["real_recordings"])]
     return "\n".join(parts)
 
 
