@@ -52,7 +52,6 @@ attacks: $(VENV)/.dev  ## every attack of docs/faults.md, until one succeeds
 	$(ATTACK) host_tests/tools -k 'test_model or test_atomic or test_drafts or test_growing'
 	$(ATTACK) host_tests/hostile -k any
 	$(BIN)/python -m host_tests.hostile.many_logs
-	$(BIN)/python -m host_tests.hostile.odd_commands
 	$(ATTACK) -s host_tests/hostile/test_bombs.py
 	$(BIN)/python -m host_tests.tools.killed_writers
 	$(BIN)/python -m host_tests.tools.killed_recorders
