@@ -20,7 +20,7 @@ from zerorate_tools.loop.read.ticks import read_ticks, tick_seconds
 from zerorate_tools.recordings import Recording, turning, write_recording
 from zerorate_tools.simulate import reference, simulate_sessions
 
-from . import arithmetic, fleets, moved, reported, resting, served, shown, watched
+from . import arithmetic, fleets, moved, reported, resting, served, watched
 from .import_texts import TEXTS
 from .kernels import KERNELS
 
@@ -225,9 +225,8 @@ def compared():
     with TemporaryDirectory() as folder:
         logs = list(_logs(Path(folder)))
         found, won = compare(logs), matrix_of(logs)
-        pages = reported.gathered_plain(shown.compared_on_a_page(logs, Path(folder)))
     figures_of = {**found.figures(), "table": table(found).splitlines(), "won": vars(won)}
-    return flat(figures_of) | pages
+    return flat(figures_of)
 
 
 _MADE_FOR = (

@@ -88,23 +88,6 @@ def test_a_figure_has_three_digits(value, text):
     assert numbers.figure(value) == text
 
 
-def test_a_chance_below_a_millionth_is_not_told_apart_and_zero_has_no_minus():
-    assert [numbers.chance(p) for p in (1e-7, 1e-6)] == ["below 10⁻⁶", "1 × 10⁻⁶"]
-    said = numbers.fixed(-0.0001, 2), numbers.fixed(1.236, 2, "+"), numbers.fixed(0.0, 1, "+")
-    assert said == ("0.00", "+1.24", "+0.0")
-
-
-@pytest.mark.parametrize(
-    ("seconds", "said"),
-    [
-        *((0.25, "250 ms"), (0.0042, "4.2 ms"), (1, "1 s"), (4.2, "4.2 s"), (119, "119 s")),
-        *((120, "2 min"), (7199, "120 min"), (7200, "2 h"), (172_799, "48 h"), (172_800, "2 days")),
-    ],
-)
-def test_a_time_is_said_in_the_largest_unit_of_which_there_are_two(seconds, said):
-    assert numbers.duration(seconds) == said
-
-
 @pytest.mark.parametrize(
     ("content", "said"),
     [(b"a" * ((1 << 20) + 1), "more than 1 MiB; do"), (b"\xff", "no text in UTF-8"),

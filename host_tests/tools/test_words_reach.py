@@ -1,7 +1,6 @@
 """What is typed reaches the function behind a command, and the code that the shell gets says how it
 went. What the commands print is tested with what they do, and by the pages of docs."""
 
-import argparse
 import json
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,7 +9,7 @@ from unittest.mock import ANY, call
 import numpy as np
 import pytest
 from zerorate_tools import cli
-from zerorate_tools.commands.options import above_zero, finite, print_json
+from zerorate_tools.commands.options import print_json
 from zerorate_tools.importers import Options, parsed_mapping
 from zerorate_tools.model import Binding
 from zerorate_tools.recordings import Scales
@@ -125,23 +124,6 @@ def test_a_function_is_given_what_was_typed(stands_in, words, function, given):
     assert asked.call_args == given
 
 
-@pytest.mark.parametrize(
-    ("words", "total"),
-    [
-        *(("close a.csv --out o", 2), ("compare a.csv b.csv", 6)),
-        *(("fleet run.parquet --out o", 1), ("replay run.parquet --out o.parquet", 4)),
-        *(("import s.py --out o.csv", 7), ("import none.csv --out o.csv", None)),
-        *(("record 0 --out o.csv --seconds 9", 9), ("record 0 --out o.csv", None)),
-        *(("simulate warm-up-a --out o.csv", 2), ("simulate car --out o.csv --session 1", 1)),
-    ],
-)
-def test_the_bar_is_as_long_as_the_work(stands_in, words, total):
-    progress = stands_in("zerorate_tools.progress.progress", Asked())
-    with pytest.raises(Asked):
-        cli.main(words.split())
-    assert progress.call_args.args[1:] == (total,)
-
-
 EXPORTED = "--odr-hz 50 --gyro-lsb-per-dps 65 --accel-lsb-per-g 8 --temp-lsb-per-degc 9 --model m"
 
 
@@ -195,23 +177,6 @@ def test_what_the_function_could_not_do_ends_with_2(words, said, capsys):
 
 
 # --- numbers ---
-
-
-@pytest.mark.parametrize("text", ["1e-9", "1e9", "0.5", "1", "0", "-1", "1000000001", "1e10"])
-def test_a_rate_or_a_time_is_above_zero_up_to_a_billion(text):
-    assert finite(text) == float(text)
-    if 0 < float(text) <= 1e9:
-        assert above_zero(text) == float(text)
-        return
-    with pytest.raises(argparse.ArgumentTypeError):
-        above_zero(text)
-
-
-@pytest.mark.parametrize("text", ["nan", "inf", "-inf"])
-@pytest.mark.parametrize("kind", [finite, above_zero])
-def test_what_is_no_finite_number_is_refused(kind, text):
-    with pytest.raises(argparse.ArgumentTypeError):
-        kind(text)
 
 
 @pytest.mark.parametrize("words", ["--seconds abc", "--address 0x78", "--address 7", "--hz 1,5"])
