@@ -262,12 +262,6 @@ def turned():
     return figures({"turns": turns, "forces": forces, "told": told}) | left
 
 
-def drawn():
-    """Of a loop closed by hand: its plots, beside estimators of a device's recordings."""
-    with TemporaryDirectory() as folder:
-        return reported.drawn([*_logs(Path(folder))][:2], Path(folder))
-
-
 def moved_figures(found):
     """Of what motion shows: its words, and the figures of its numbers."""
     return {n: [of] if isinstance(of, str) else figures({n: of})[n] for n, of in found.items()}
@@ -284,7 +278,6 @@ KNOWN = {
     "arithmetic": arithmetic.arithmetic,
     **KERNELS,
     "reported": reported.reported,
-    "drawn": drawn,
     "simulated": simulated,
     "read": read,
     "parts of reading": parts_of_reading,

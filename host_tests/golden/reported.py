@@ -1,12 +1,10 @@
-"""A closed loop made by hand, so that no search decides what is found: its report and its plots.
+"""A closed loop made by hand, so that no search decides what is found: its report.
 
 Effects are fitted to short sessions with steps, a matrix, a delay and lines.
 """
 
 import json
-import re
-from dataclasses import asdict, replace
-from unittest import mock
+from dataclasses import replace
 
 import numpy as np
 from zerorate_bench.loop.simulated import simulate
@@ -25,15 +23,12 @@ from zerorate_tools.loop.search.select import select
 from zerorate_tools.loop.search.selection import Found, Selection
 from zerorate_tools.loop.search.steps import Step
 from zerorate_tools.loop.search.steps_first import remove_steps
-from zerorate_tools.loop.verify.analysis import Analysis, model_of
+from zerorate_tools.loop.verify.analysis import Analysis
 from zerorate_tools.loop.verify.courses import AFTER, BEFORE, ONLINE, ONLINE_BEFORE, Course, Courses
 from zerorate_tools.loop.verify.judge import ResidualTest, judge
-from zerorate_tools.model import build_model, write_model
 from zerorate_tools.model.term import Term
-from zerorate_tools.recordings import open_recording
-from zerorate_tools.report import motion_page, page, report_folder
+from zerorate_tools.report import page
 
-from host_tests.conftest import matrix_slots
 from host_tests.loop import dense
 
 _T, _V = Term("temp", 10.0, 40.0, 25.0), Term("vdd_mv", 3200.0, 3400.0, 3300.0)
@@ -187,42 +182,6 @@ def reported():
         every = {key: part for key, part in {**result, **beside}.items() if key != "steps"}
         found |= gathered({f"{name} {key}": _plain(part) for key, part in every.items()})
     return found
-
-
-def drawn(logs, folder):
-    """Plots of all kinds of effects, and the page of motion. logs: recordings of a device."""
-    found, kinds, scales = {}, [*_TERMS], open_recording(logs[0]).scales
-    blind = analysed(["power-on-transient"], sessions=1, tempered=False)
-    for number, analysis in enumerate((analysed(kinds[:4]), analysed(kinds[4:], 3), blind)):
-        write_model(model_of(analysis, scales), folder)
-        result = _plain(report(analysis))
-        made = mock.Mock(wraps=page.page)
-        board = page.deployment(folder, ["temp", 'a <b class="c">'])
-        given = {"_MOST_MOMENTS": 9, "page": made, "deployment": mock.Mock(return_value=board)}
-        with mock.patch.multiple(report_folder, **given):
-            report_folder.write_report(analysis, result, logs, folder)
-        text, (_, plots, *_) = (folder / "report.html").read_text("utf-8"), made.call_args.args
-        told = re.findall(r'<data value="([^"]+)"', text)
-        found[f"{number} page"] = [float(value) for value in told]
-        found[f"{number} plots"] = [plot.key for plot in plots] + re.findall('class="(.*?)"', text)
-        for plot in plots:
-            sizes = [page.height(plot, narrow) for narrow in (True, False)]
-            told = [page.plain(plot), sizes, page.legend(plot)]
-            told[0]["frames"] = told[0]["frames"][-2:]
-            found |= gathered({f"{number} {plot.key}": told})
-    return found | gathered_plain({"motion": _in_motion(folder, scales)})
-
-
-def _in_motion(folder, scales):
-    """What the page of motion is given to draw, of a matrix of which half is deployed."""
-    error = np.array([[0.012, 0.001, -0.002], [0.003, -0.009, 0.004], [-0.001, 0.002, 0.006]])
-    write_model(build_model(matrix_slots(error / 2), scales), folder)
-    ci = np.array([[0.05, 0.04, 3.0], [0.05, 0.06, 3.0], [0.05, 0.03, 3.0]])
-    motion = {"matrix_percent": (100 * error).tolist(), "ci95_percent": ci.tolist()}
-    with mock.patch.object(motion_page, "rendered", lambda *of, **values: values):
-        told = motion_page.motion_page({"in_motion": motion, "effects": []}, folder)
-    targets = [asdict(target) for target in told["targets"]]
-    return [targets, *(told[n] for n in ("ring", "scale", "turn_scale", "edge", "turn"))]
 
 
 def _power_ons(effects, blocks=120):
