@@ -117,6 +117,7 @@ def test_the_unit_has_a_watchdog_and_no_rights(repository, tmp_path):
     unit = configparser.ConfigParser(strict=False, interpolation=None)
     unit.optionxform = str
     text = (repository / "examples" / "zerorate.service").read_text()
+    assert text in (repository / "docs" / "linux-service.md").read_text()
     unit.read_string(text)
     service = unit["Service"]
     assert service["Type"] == "notify" and int(service["WatchdogSec"]) >= 15
