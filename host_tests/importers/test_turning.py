@@ -118,30 +118,6 @@ def test_gaps_and_cells_without_a_number_do_not_change_what_is_told():
     assert dps_of_one(*slow[1:], slow[0]) is None
 
 
-def test_spans_are_of_three_seconds_without_a_gap_in_means_of_30_ms():
-    t_s = np.arange(300 * 8 + 1) / 100
-    t_s[301:] += 0.29  # within the second span, the first step of which is whole
-    t_s[901:] += 0.31
-    t_s[1501:] -= 0.31
-    rates, force = np.random.default_rng(1).normal(0, 1, (2, 3, len(t_s)))
-    rates[:, -1], force[0, -1] = np.nan, np.inf
-    turns, forces = turning._spans(np.insert(rates, 5, np.nan, 1), np.insert(force, 5, 0, 1),
-                                   np.insert(t_s, 5, 0.045))  # fmt: skip
-    for found, of in ((turns, np.radians(rates * 0.03)), (forces, force)):
-        means = of[:, : 300 * 7].reshape(3, 7, 100, 3).mean(axis=3)[:, [0, 1, 2, 4, 6]]
-        assert found == pytest.approx(means.transpose(2, 0, 1))
-    assert turning._spans(rates[:, :2100], force[:, :2100], t_s[:2100]) is None  # of four
-
-
-@pytest.mark.parametrize(("spans", "used"), [(5, 5), (99, 99), (100, 50), (199, 100), (200, 67)])
-def test_a_hundred_spans_tell_enough(spans, used):
-    t_s = np.arange(2 * spans + 1) * 1.5
-    every = np.array([t_s] * 3)
-    assert turning._spans(every, every, t_s)[1].shape[2] == used
-    assert turning._spans(every, every, np.arange(len(t_s)) * 1.6) is None
-    assert turning._spans(every[:, :1], every[:, :1], t_s[:1]) is None
-
-
 @pytest.mark.parametrize(("power", "told"), [(-33, 0), (-32, 1), (-4.5, 1), (19, 1), (20, 0)])
 def test_sizes_at_the_ends_of_what_is_tried_are_not_told(power, told):
     t_s, rates, force = in_a_hand(hz=33.0, seconds=20.0, push_g=0.0)

@@ -1,7 +1,5 @@
 """What the plots hold, whoever draws them."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -12,11 +10,11 @@ from zerorate_tools.loop.search.curve import FORMS, KIND
 from zerorate_tools.model.effects import EFFECTS
 from zerorate_tools.recordings import open_recording
 from zerorate_tools.replay import replay
-from zerorate_tools.report import effect_plots, sentences
+from zerorate_tools.report import sentences
 from zerorate_tools.report.estimators import moments
 from zerorate_tools.report.plot import thinned
 from zerorate_tools.report.report_folder import plots_of
-from zerorate_tools.report.residual_plots import HeldOut, against_time, held_out, longest
+from zerorate_tools.report.residual_plots import HeldOut, against_time, longest
 
 
 @pytest.fixture(scope="module")
@@ -35,32 +33,6 @@ def test_thinning_keeps_the_extremes_and_the_order(n, seed):
     assert np.array_equal(kept, y[x])
     if n:
         assert kept.min() == y.min() and kept.max() == y.max()
-
-
-@pytest.mark.parametrize(
-    ("name", "said"), [("run-4", "run-4"), ("29_disturbed_stationary", "what was held out")]
-)
-def test_the_label_of_the_time_axis_fits_a_phone(outcome, name, said):
-    [part] = held_out(outcome("an effect").analysis)
-    panel = against_time([replace(part, name=name)], []).panels[-1]
-    assert panel.x_label == f"minutes since the start of {name}"
-    assert panel.x_narrow == f"minutes since the start of {said}"
-
-
-def test_thinning_looks_at_stretches_of_a_length():
-    x, y = thinned(np.arange(100) + 7, np.arange(100) % 10 % 7, 20)
-    lowest_and_highest = [10 * k + at for k in range(10) for at in (0, 6)]
-    assert x.tolist() == [7 + at for at in lowest_and_highest] and y.tolist() == [0, 6] * 10
-
-
-@pytest.mark.parametrize(("count", "step"), [(1199, 1), (1200, 2), (3000, 5)])
-def test_of_many_points_beside_a_curve_some_hundreds_are_drawn(monkeypatch, count, step):
-    every = np.arange(count) + 0.5, -np.arange(count), np.ones(count, int)
-    monkeypatch.setattr(effect_plots, "_points", lambda *of: every)
-    monkeypatch.setattr(effect_plots, "_curve", lambda *of: every[:2])
-    warms, *_ = effect_plots._series([], [(None, np.zeros((1, 3)))], ())
-    assert warms.x.tolist() == every[0][::step].tolist()
-    assert warms.y.tolist() == every[1][::step].tolist()
 
 
 def test_thinning_keeps_a_gap():

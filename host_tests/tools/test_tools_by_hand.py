@@ -200,20 +200,6 @@ def test_a_child_limits_itself_by_the_file_s_size_and_never_beyond_what_its_user
     assert put[resource.RLIMIT_CPU] == (0, 0)
 
 
-@pytest.mark.parametrize(
-    ("code", "problem", "do"),
-    [
-        (-24, "too long", "cut it"),
-        (1, "ended with 1", "ulimit"),
-        (0, "ended with 0", "copy it again"),
-        (-11, "with -11", "copy it again"),
-    ],
-)
-def test_how_a_child_ended_says_what_to_do(code, problem, do):
-    said = bounds.how_it_ended(code)
-    assert problem in said[0] and do in said[1]
-
-
 @pytest.mark.parametrize("terminal", [False, True])
 def test_a_pipe_is_told_now_and_then_how_long_it_takes_and_a_terminal_has_a_bar(
     monkeypatch, terminal
