@@ -1,4 +1,4 @@
-"""Real recordings as others might have made them: cut, bereft of a sensor, with a step.
+"""Real recordings as others might have made them: cut, without a sensor, with a step.
 
 What is deployed is scored where nobody fitted it: on pieces or a recording left out, and, for a
 half, on the other half, as a later power-on at temperatures that the half has shown.
@@ -189,9 +189,9 @@ def _seen(own: Session, other: Session) -> np.ndarray:
 
 
 def in_markdown(rows: list[dict[str, Any]]) -> str:
-    """The page of `zerorate bench variants`: how many of each variant are worse, then every row."""
+    """The page of `zerorate bench variants`: how many of each variant are worse, then the rows."""
     lines = [
-        "# Real recordings cut, bereft of a sensor, and with a step",
+        "# Real recordings, cut, without a sensor, and with a step",
         "",
         "`zerorate bench variants` wrote this page. " + machine_line(),
         "`deployed` is something found and in model.bin; `worse` is by more than 2 %.",
@@ -208,7 +208,9 @@ def in_markdown(rows: list[dict[str, Any]]) -> str:
     steps = [r["found_the_step"] for r in rows if "found_the_step" in r]
     said = f"Steps of {_STEP_NOISES:g} times the noise of a block listed"
     lines += [f"{said}: {sum(steps)} of {len(steps)}.", ""]
-    return "\n".join([*lines, table_of(rows)])
+    shown = [r for r in rows if r.get("found") or r.get("refused") or "found_the_step" in r]
+    lines += [f"In the {len(rows) - len(shown)} rows that are left out here nothing was found.", ""]
+    return "\n".join([*lines, table_of(shown)])
 
 
 def _by_variant(rows: list[dict[str, Any]]) -> dict[str, list[dict[str, Any]]]:
