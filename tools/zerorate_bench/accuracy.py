@@ -41,8 +41,8 @@ the store.
 _DAY = """\
 All begin with nothing learned. Waiting a second for the first rest raises the daily RMS. The last
 two rows are floors, not estimators. The first is a Kalman filter that knows the true rests, the
-true curve over temperature and the best walk for this day. The second is a Wiener smoother that
-knows the curve and the spectra of bias and noise, sees a device that rests all day, and looks
+true curve over temperature and the best random walk for this day. The second is a Wiener smoother
+of a device that rests all day. It knows the curve and the spectra of bias and noise, and looks
 ahead. It leaves flicker noise that the white noise hides. Nothing gets below it on this part.
 """
 _HONESTY = """\

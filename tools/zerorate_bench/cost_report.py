@@ -42,7 +42,7 @@ call for each sample; "bursts" is one call for 64. The call from MicroPython com
 [boards.md](boards.md).
 """
 _EFFECTS = """\
-What the slots of a model add to a sample on the Cortex-M0+, at 100 Hz. A slot of temperature, of
+The slots of a model add this to a sample on the Cortex-M0+, at 100 Hz. A slot of temperature, of
 time or with a memory is computed once a second, one slot a sample. A slot of a rate, an
 acceleration or a channel is computed at every sample.
 """

@@ -36,7 +36,7 @@ _CUT = re.compile(r"zerorate cut .* FOLDER")
 _HEAD = """# Logs of other tools
 
 `zerorate bench import` writes each of these logs as its tool does, and imports it by the command
-line. It is given no more than a user of that tool knows. The exit code is 1 where one is wrong.
+line, with no more than a user of that tool knows. The exit code is 1 if one is wrong.
 """
 _WORDS = f"""
 | outcome | what it says |
@@ -45,8 +45,8 @@ _WORDS = f"""
 | {BY_ITS_WORDS} | `import` refuses and offers words to type; a choice of them holds the right one |
 | {REFUSED} | `import` refuses, and says what to do outside of it |
 
-What a name claims and no reading denies is believed: a time in milliseconds that is called seconds,
-say, at a rate at which somebody might have recorded.
+`import` accepts a name that no reading contradicts, such as a time in milliseconds that is called
+seconds, if somebody might have recorded at that rate.
 """
 _OPTION = re.compile(r"--[a-z-]+ (?:'[^']*'|[^\s,;()]+)(?: \(or [^)]*\))?")
 #: A reading of time by another unit: `us (1000 Hz) or ms (1 Hz)`.

@@ -26,8 +26,8 @@ Array = NDArray[np.float64]
 _G = 9.80665
 _EVERY = 10
 _OPTICS = """\
-Far is a chi-squared of nine degrees of freedom: of a trial's matrix, fitted beside the optics,
-being that of the other trials named."""
+The distance is a chi-squared of nine degrees of freedom, between the matrix of the trial and that
+of the other trials named, all fitted with the optics."""
 _BESIDE = {
     "own": "after, fitted on its first half and its optics",
     "optics": "after, fitted on other trials and their optics",
@@ -172,7 +172,7 @@ def in_markdown(found: dict[str, Any]) -> str:
     verdict = f"refused, {groups}{either}" if groups else "NOT refused"
     parts.append(f"All trials as one device: {verdict}.")
     if found["optics"]:
-        heads = ["trial, by the optics", *(f"far from {', '.join(g)}" for g in found["refused"])]
+        heads = ["trial, by the optics", *(f"distance to {', '.join(g)}" for g in found["refused"])]
         rows = [[n, *(f"{d:.0f}" for d in far)] for n, far in found["optics"].items()]
         parts += [table(heads, rows), _OPTICS]
     for key, words in (("others", "other trials"), ("halves", "its first half")):

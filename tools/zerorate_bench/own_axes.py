@@ -144,15 +144,15 @@ _WORDS = """\
 
 `zerorate bench own-axes` wrote this page: {n} simulated devices a row, and nine trials of BROAD.
 
-Beside the bias, the filter in motion estimates the nine entries of the matrix of scale factors and
-axes. The firmware does not subtract them. This page shows what subtracting them would do. An entry
-is the posterior mean under a prior of 1 %, times one less its share of the prior's variance.
+The filter in motion also estimates the nine entries of the matrix of scale factors and axes. The
+firmware does not subtract them. This page shows what that would do. An entry is the posterior mean
+under a prior of 1 %. It is shrunk by the factor 1 - its variance / the prior's variance.
 
 | column | what it is |
 | --- | --- |
 | left, worst | RMS of the nine entries afterwards: median and worst device |
 | within two sigma | share of the entries whose truth lies within two sigma |
-| wrong | entries whose error is above three sigma, and 0.2 % above that without the estimate |
+| wrong | entries with an error above three sigma and 0.2 % larger than without the estimate |
 | heading | degrees RMS that 6,000 samples lose, before -> after: median device |
 """
 _BROAD = """\
