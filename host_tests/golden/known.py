@@ -291,7 +291,7 @@ KNOWN = {
     "searched one": reported.searched_one,
     **TEXTS,
     "served": served.served,
-    "watched": lambda: reported.gathered(watched.watched()),
+    "watched": lambda: reported.gathered(dict(watched.watched())),
 }
 
 

@@ -70,8 +70,8 @@ def _of(live):
     ]}  # fmt: skip
 
 
-def _watched():
-    """A recording in pieces through the firmware, in lines and on a screen."""
+def watched():
+    """Yield (name, what is watched) of a recording in pieces, in lines and on a screen."""
     recording, _ = simulate(_WARM)
     parts = np.array_split(np.arange(len(recording)), [0, 7, 120, 250])
     pieces = [{n: c[at].astype(np.int64) for n, c in recording.columns.items()} for at in parts]
@@ -109,8 +109,3 @@ def _followed(scales, batches):
         once.run()
         once.look()
     return looked
-
-
-def watched():
-    """All that is watched."""
-    return dict(_watched())

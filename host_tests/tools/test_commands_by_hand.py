@@ -68,20 +68,6 @@ def test_an_interpreter_that_was_asked_for_is_none_other_and_ones_own_is_not_fet
     assert "not there" in capsys.readouterr().err
 
 
-# --- state ---
-
-
-@pytest.mark.parametrize(("sought", "code"), [("", 0), ("bi", 0), ("turn", 2)])
-def test_words_of_a_state_are_shown_by_a_part_of_their_name(stands_in, capsys, sought, code):
-    words = [SimpleNamespace(name="BIAS"), SimpleNamespace(name="SIGMA")]
-    stands_in("zerorate_tools.replay.state_in_words.words_of_file", words)
-    show = stands_in("zerorate_tools.replay.state_in_words.in_words")
-    assert cli.main(["state", "show", "learned.bin", "--find", sought]) == code
-    found = [call(words[: 1 if sought else 2])] if code == 0 else []
-    assert show.call_args_list == found
-    assert ("learned.bin: no word has turn" in capsys.readouterr().err) is bool(code)
-
-
 # --- record ---
 
 
