@@ -31,6 +31,8 @@ _BAD = (WRONG, MISLED, NO_CURE)
 #: Root of the mean square of what may be off: a coarse LSB, half a period's noise.
 _DPS, _G, _DEGC = 0.4, 0.02, 0.2
 _WORST = 10.0
+#: And what a scale may be: half a percent of the whole.
+_SIZE = 0.005
 _MOST_WORDS = 24
 _CUT = re.compile(r"zerorate cut .* FOLDER")
 _HEAD = """# Logs of other tools
@@ -156,20 +158,21 @@ def _off(recording: Recording, log: Log) -> str:
         return f"its times are not those of the log: {t_s[-1] - t_s[0]:.4g} s"
     if not log.least * world.samples <= len(at) <= log.most * world.samples:
         return f"{len(at)} samples of {world.samples}"
-    far = [("rates", recording.gyro_dps() - world.dps[at], _DPS)]
+    read = [("rates", recording.gyro_dps(), world.dps[at], _DPS)]
     if "ax" in recording.columns:
-        far.append(("forces", recording.accel_g() - world.g[at], _G))
+        read.append(("forces", recording.accel_g(), world.g[at], _G))
     if "temp" in recording.columns:
-        far.append(("temperature", recording.temp_degc() - world.degc[at], _DEGC))
-    off = [
-        (name, float(np.sqrt(np.mean(error**2))), float(np.abs(error).max()), most)
-        for name, error, most in far
-    ]
-    return ", ".join(
-        f"{name} off by {rms:.3g}, at most {worst:.3g}"
-        for name, rms, worst, most in off
-        if not (rms <= most and worst <= _WORST * most)
-    )
+        read.append(("temperature", recording.temp_degc(), world.degc[at], _DEGC))
+    return ", ".join(said for one in read if (said := _unlike(*one)))
+
+
+def _unlike(name: str, found: np.ndarray, true: np.ndarray, most: float) -> str:
+    """In words, how far what was read is off; empty where it is as the truth has it."""
+    error, size = found - true, float(np.sum(found * true) / np.sum(true**2))
+    rms, worst = float(np.sqrt(np.mean(error**2))), float(np.abs(error).max())
+    if rms <= most and worst <= _WORST * most and abs(size - 1.0) <= _SIZE:
+        return ""
+    return f"{name} off by {rms:.3g}, at most {worst:.3g}, {size:.4f} times as large"
 
 
 def _far(recording: Recording, truth: np.ndarray, at: np.ndarray, first: int) -> float:
