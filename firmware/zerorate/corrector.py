@@ -21,6 +21,7 @@ _SOURCE = const(78)
 _TURN_ON_OFFSET_Q8 = const(-3)
 # layout: An axis
 _WAITING_N = const(1)
+_OFFSET_FROM = const(13)
 _OFFSET_Q8 = const(27)
 _OFFSET_VARIANCE_Q8 = const(28)
 _WALK_Q16 = const(29)
@@ -139,8 +140,10 @@ class Corrector:
                 # what is beyond the gate was a jump, and stays
                 if abs(s[a + _OFFSET_Q8]) >> 4 < c[_GATE_Q4]:
                     s[a + _OFFSET_Q8] >>= 1
-                s[a + _OFFSET_VARIANCE_Q8] = c[_TURN_ON_VARIANCE_Q8]
-                s[a + _LEFT_Q4] = _NO_VALUE
+                # what motion left unsure is no surer after having been off
+                if not s[a + _OFFSET_FROM] or s[a + _OFFSET_VARIANCE_Q8] < c[_TURN_ON_VARIANCE_Q8]:
+                    s[a + _OFFSET_VARIANCE_Q8] = c[_TURN_ON_VARIANCE_Q8]
+                    s[a + _LEFT_Q4] = _NO_VALUE
                 s[a + _OFFSET_AGE_MS] = 0
             # else what is held back until it insists would be the curve's
             s[c[_AXES] + _TURN_ON_OFFSET_Q8 + axis] = s[a + _OFFSET_Q8]

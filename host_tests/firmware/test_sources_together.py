@@ -213,3 +213,12 @@ def test_a_rough_guess_is_not_put_out(samples):
     played(corrector, samples[: round(40 * HZ)])
     assert corrector.motion[MOTION_LEARNED] > 0
     assert list(corrector.state[SOURCE_WORD : SOURCE_WORD + 3]) == [0, 0, 0]
+
+
+def test_what_motion_left_unsure_is_no_surer_after_a_power_off(samples):
+    corrector = played(both(motion_most_dps=1.0, motion_full_dps=0.1), samples[: round(60 * HZ)])
+    before = [corrector.quality_lsb(axis) for axis in range(3)]
+    corrector.power_on()
+    played(corrector, samples[:1])
+    for axis in range(3):
+        assert 0.02 * LSB < before[axis] == pytest.approx(corrector.quality_lsb(axis), rel=0.01)

@@ -14,8 +14,12 @@ void zerorate_power_on(zerorate_t *z, int32_t same) {
         if (!same) {
             /* what is beyond the gate was a jump, and stays */
             if ((offset < 0 ? -offset : offset) >> 4 < c[SETTINGS_GATE_Q4]) a[AXIS_OFFSET_Q8] >>= 1;
-            a[AXIS_OFFSET_VARIANCE_Q8] = c[SETTINGS_TURN_ON_VARIANCE_Q8];
-            a[AXIS_LEFT_Q4] = NO_VALUE;
+            /* what motion left unsure is no surer after having been off */
+            int32_t usual = c[SETTINGS_TURN_ON_VARIANCE_Q8];
+            if (!a[AXIS_OFFSET_FROM] || a[AXIS_OFFSET_VARIANCE_Q8] < usual) {
+                a[AXIS_OFFSET_VARIANCE_Q8] = usual;
+                a[AXIS_LEFT_Q4] = NO_VALUE;
+            }
             a[AXIS_OFFSET_AGE_MS] = 0;
         }
         /* TURN_ON_OFFSET_Q8: else what is held back until it insists would be the curve's */
