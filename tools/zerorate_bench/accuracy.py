@@ -13,7 +13,7 @@ from zerorate_tools.peers import Given, Peer, first_seconds, given
 from zerorate_tools.recordings import Recording
 from zerorate_tools.simulate import simulate_sessions
 
-from .limits import ACCURACY, SESSION_2, limits_table, verdicts
+from .limits import ACCURACY, SESSION_2, verdicts
 from .peers import HOW, OURS, PEERS, uncorrected, within_two_sigma
 from .public_data import data_folder, recordings, told_of
 from .tables import machine, machine_line, number, table
@@ -152,10 +152,7 @@ def run(quick: bool, advance: Callable[[float], None]) -> dict[str, Any]:
 
 
 def in_markdown(found: Mapping[str, Any]) -> str:
-    limits = limits_table(found["limits"])
-    return "\n".join(
-        ["# Accuracy\n", _MADE, machine_line(found["machine"]), limits, *sections(found)]
-    )
+    return "\n".join(["# Accuracy\n", _MADE, machine_line(found["machine"]), *sections(found)])
 
 
 def sections(found: Mapping[str, Any]) -> Iterator[str]:
