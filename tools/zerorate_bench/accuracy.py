@@ -34,9 +34,9 @@ another figure for the same filter and scenario.
 """
 _SESSION_2 = """\
 Session 1 warms from 20 to 45 degC in 40 minutes. Then the power is cut. Session 2 warms from 17
-to 44 degC in 20 minutes. `zerorate` has default settings and no effect model, for A, B and C
-alike. It loads what it learned in session 1 from the store, so its first {first:.0f} s are from
-the store.
+to 44 degC in 20 minutes. A has a bias of 0.8 dps. B has 6 dps and a curve over temperature. C also
+has drift and a thermometer that lags. `zerorate` has default settings and no effect model. It loads
+what it learned in session 1, so its first {first:.0f} s are from the store.
 """
 _DAY = """\
 All begin with nothing learned. Waiting a second for the first rest raises the daily RMS. The last
