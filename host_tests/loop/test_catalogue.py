@@ -118,7 +118,7 @@ def test_what_motion_tells_by_samples_beside_a_reference_is_no_effect(moves_s, d
 
 def test_a_late_part_adds_lags_or_the_rate_of_temperature_times_its_slope():
     late, lags = catalogue.late([warm()]), catalogue.lags([warm()])
-    assert [[t.lag_s for t in c.terms] for c in late] == [[1.0, 1.0], [8.0, 8.0]]
+    assert [[t.lag_s for t in c.terms] for c in late] == [[5.0, 5.0]]
     assert {c.terms[1].second_centre for c in late} == {lags[0].centre} == {25.0}
     every = [(s, k, k == 2) for s in (5, 15, 45, 135, 405, 1215) for k in (1, 2)]
     assert [(t.lag_s, t.power, t.power_first) for t in lags] == every

@@ -27,7 +27,7 @@ def test_rows_without_a_number_count_nowhere_and_runs_of_fifteen_are_drawn():
     torn = [np.vstack([rows[:20], [[np.nan]], rows[20:24]]), rows[24:]]
     note = lambda r: drawn.append(r[:, 0]) or 0.0  # noqa: E731
     block_bootstrap(torn, note)
-    assert len(drawn) == 400 and all((np.diff(r)[:14] == 1).all() for r in drawn)
+    assert len(drawn) == 1500 and all((np.diff(r)[:14] == 1).all() for r in drawn)
     assert {len(r) for r in drawn} == {50} and {r[0] for r in drawn} == set(range(36))
     drawn.clear()
     block_bootstrap([rows[:30]], note)  # of thirty rows a run has a third

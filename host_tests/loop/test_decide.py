@@ -84,7 +84,7 @@ def test_what_follows_time_is_asked_other_questions_where_it_can_come_again(sess
     assert testing.is_by_time(DRIFT) is power_ons and not testing.is_by_time(BOTH)
     tried, of_two = testing.tried(DRIFT), testing.tried(BOTH)
     one = decide.smallest_ratio("catalogue", 3, tried)
-    again = chi2.isf(0.01, 3), drift_test.smallest_square(tried, 3, 3)
+    again = chi2.isf(np.exp(-3), 3), drift_test.smallest_square(tried, 3, 3)
     told = testing.least_ratio(DRIFT), testing.needed(DRIFT)
     assert told == pytest.approx(again if power_ons else (one, one))
     assert testing.least_ratio(BOTH) == decide.smallest_ratio("catalogue", 6, of_two)

@@ -90,7 +90,7 @@ def test_a_colour_that_three_axes_share_costs_what_student_s_t_says():
     low = np.array([0.0, 1.0, 2.0])
     likely = np.array([[0.0, -50.0, -50.0], [-50.0, -50.0, -1.0]])
     off = (low - np.linspace(0.0, 2.0, 31)[:, None]) / 0.7
-    costs = (likely[:, None] - 2.0 * np.log1p(off**2 / 3)).max(axis=2).sum(axis=0)
+    costs = (likely[:, None] - 2.5 * np.log1p(off**2 / 4)).max(axis=2).sum(axis=0)
     assert drift_test.common_colour(likely, low) == pytest.approx(costs.max())
     spectrum = np.exp(np.array([[4.0, 2.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0]]))
     assert drift_test.lowness(spectrum) == pytest.approx([3.0 - 1.5, 0.0])

@@ -18,7 +18,7 @@ from .dense import SCALE, A, B
 
 def test_a_session_left_out_is_predicted_by_the_others_alone(regression, with_gap):
     full = regression.fit([A, B]).base
-    wide = full.variance / (3.0 * np.sqrt((full.fitted[:, 1] ** 2).mean())) ** 2
+    wide = full.variance / (full.fitted[:, 1] ** 2).mean()
 
     def lost(s, terms):
         """Squares of a session, by coefficients of the others, in units of the noise."""
@@ -28,7 +28,7 @@ def test_a_session_left_out_is_predicted_by_the_others_alone(regression, with_ga
             to, own = np.linalg.inv(p.v[full.best[a]]), p.rows[s]
             rest = np.delete(np.arange(len(p.y)), own)
             x, y, v = p.x[rest], p.y[rest, a], to[np.ix_(rest, rest)]
-            # normal about zero, three times as wide as it is on all axes
+            # normal about zero, as wide as it is on all axes
             zz = x.T @ v @ x + np.diag([0.0, wide[a]][: len(terms)])
             left = p.y[own, a] - p.x[own] @ np.linalg.solve(zz, x.T @ v @ y)
             total += left @ to[own, own] @ left / full.variance[a]
@@ -46,7 +46,7 @@ def test_what_is_known_of_coefficients_before_a_session_left_out(regression):
 
     base, told = known([B, A, Term("c", power=2)], slice(1, 3))
     size = np.sqrt((base.fitted[:, 1:3] ** 2).mean(axis=0))
-    assert told[:, 1:3] == pytest.approx(base.variance[:, None] / (3 * size) ** 2)
+    assert told[:, 1:3] == pytest.approx(base.variance[:, None] / size**2)
     assert (told[:, 0] == 0).all() and told.shape == base.fitted.shape
     plays = [B, A, *(replace(A, memory="play", width=w) for w in (1.0, 2.0))]
     _, told = known(plays, slice(1, 2))

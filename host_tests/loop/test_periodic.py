@@ -40,7 +40,7 @@ def lines(made, terms=NO_TERMS):
 )
 def test_a_slow_line_may_be_a_quick_one_as_ticks_show_it(quick, slow, same):
     both = [Line(hz, np.ones(3), 1e-9, True) for hz in (quick, slow)]
-    assert periodic._folds(*both, 1.0) is same
+    assert periodic._folds(*both, 1.0, 0.02) is same
 
 
 def test_a_line_in_ticks_is_found_with_its_period():

@@ -79,15 +79,14 @@ def test_a_pass_ends_where_temperature_turns_back_after_what_it_holds(degc, pass
     assert bare.by_passes() is bare
 
 
-@pytest.mark.parametrize(("blocks", "gap"), [(400, 2), (800, 5), (60, 1), (10, 1)])
-def test_the_gap_is_an_eighth_of_a_piece_and_a_block_at_least(blocks, gap):
+@pytest.mark.parametrize("blocks", [400, 60, 10])
+def test_a_block_at_either_side_of_a_piece_is_neither_fitted_nor_judged(blocks):
     session = in_time(blocks)
-    assert single.gap_blocks(session) == gap
     judged = single.PiecesByLine(session)
     for k, part in enumerate(judged.parts):
         left = np.flatnonzero(judged.fold == k)
         near = np.abs(left[:, None] - np.arange(blocks)).min(axis=0)
-        assert (part.available == (near > gap)).all()
+        assert (part.available == (near > 1)).all()
         assert (part.weight > 0).tolist() == part.available.tolist()
 
 
@@ -131,19 +130,19 @@ def test_what_is_fitted_beside_a_recording_is_fitted_with_it(judged):
     assert judged.fitted_to(both[0], [], [])[0] == []
 
 
-def test_a_turn_s_nats_are_a_tenth_of_its_blocks_times_the_log_of_what_its_error_falls_by(judged):
+def test_a_piece_counts_as_a_block_in_a_turn_s_nats(judged):
     before, after = judged.residual([LINE], []) ** 2, judged.residual([LINE], [A]) ** 2
     expected = []
     for own in (judged.fold == k for k in range(10)):
         falls = np.log(before[own].sum(axis=0) / after[own].sum(axis=0))
-        expected.append(0.5 * 0.1 * own.sum() * falls.sum())
+        expected.append(0.5 * 20 / 200 * own.sum() * falls.sum())
     assert judged([LINE], [], [A]) == pytest.approx(expected)
 
 
 @pytest.mark.parametrize(
     ("before", "after", "blocks", "nats"),
     [
-        ((4.0, 0.0, 1.0), (1.0, 1.0, np.inf), 10, 0.5 * 0.1 * 10 * np.log(4)),
+        ((4.0, 0.0, 1.0), (1.0, 1.0, np.inf), 10, 0.5 * 3 * np.log(4)),
         ((1.0, 1.0, 1.0), (0.0, 0.0, 0.0), 10, 0.0),
         ((1.0, 1.0, 1.0), (0.5, 0.5, 0.5), 0, 0.0),
     ],

@@ -152,17 +152,6 @@ def test_what_is_left_is_what_the_columns_do_not_hold(regression, with_gap):
         assert left[i] == pytest.approx(own)
 
 
-@pytest.mark.parametrize("square_at", [0, 1])
-def test_squares_of_acceleration_are_shrunk_by_a_thousandth(square_at):
-    session = dense.made(5, 30, names=("acc_x", "b"))
-    terms = [Term("acc_x"), B]
-    p = dense.problem([session], terms)
-    own = dense.contrasts(session).T @ session.sources["acc_x"] ** 2
-    terms.insert(square_at, Term("acc_x", power=2))
-    told = Regression([session]).cross_products(terms).zz[0, :, square_at, square_at]
-    assert told == pytest.approx(1.001 * np.array([own @ np.linalg.inv(v) @ own for v in p.v]))
-
-
 def test_weights_that_are_told_are_shrunk_by_their_precision(with_gap):
     two = Regression(with_gap[:2])
     plain = two.cross_products([B])

@@ -4,7 +4,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-_LENGTH, _DRAWS = 15, 400
+from .surrogates import COUNT
+
+_LENGTH = 15
 
 
 def block_bootstrap(
@@ -19,7 +21,7 @@ def block_bootstrap(
     length = max(1, min(_LENGTH, len(rows) // 3))
     runs = -(-len(rows) // length)
     values = []
-    for _ in range(_DRAWS):
+    for _ in range(COUNT):
         start = rng.integers(0, len(rows) - length + 1, runs)
         at = (start[:, None] + np.arange(length)).ravel()[: len(rows)]
         values.append(statistic(rows[at]))

@@ -9,16 +9,12 @@ from .likelihood import Base
 from .regression import Regression
 from .shrunk import has_play_operators, shrink
 
-#: Of coefficients about zero, over their size in all sessions: wide, so that only what the other
-#: sessions all but fail to show is held back.
-_SPREAD = 3.0
-
 
 def precision_of(
     regression: Regression, g: CrossProducts, base: Base, terms: Terms, own: slice
 ) -> np.ndarray:
     """(A, J) of coefficients about zero, over the white part of the noise: of the own ones of a
-    candidate wide, as large as all sessions show them; of the parts of a curve, and of play
+    candidate as large as all sessions show them; of the parts of a curve, and of play
     operators, as large as is likely.
 
     base: the fit of all sessions to the products g.
@@ -28,7 +24,7 @@ def precision_of(
         out = shrink(g, regression.scale, terms, own, alike=False).precision
     else:
         size = np.sqrt((base.fitted[:, own] ** 2).mean(axis=0))
-        out[:, own] = base.variance[:, None] / (_SPREAD * np.maximum(size, 1e-300)) ** 2
+        out[:, own] = base.variance[:, None] / np.maximum(size, 1e-300) ** 2
     shrunk = of_plays(g, regression.scale, terms)
     return np.where(shrunk > 0, shrunk, out)
 

@@ -11,10 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.fft import dct
 
-_FLICKER = (0.0, 0.01, 0.03, 0.08, 0.2, 0.5, 1.3, 3.5)
-_WALK = (0.0, 0.004, 0.012, 0.03, 0.07, 0.15, 0.4, 1.0, 3.0)
-_STEEP = (0.01, 0.025, 0.06, 0.15, 0.4, 1.0)
-_STEEP_FLICKER = (0.0, 0.08)
+#: Corner frequencies that are tried, in radians per block; none, where it is 0.
+_CORNERS = (0.0, 0.004, 0.01, 0.03, 0.08, 0.2, 0.5, 1.3, 3.5)
 
 
 @dataclass(frozen=True)
@@ -29,16 +27,18 @@ class Shape:
 
 def shapes() -> list[Shape]:
     """The grid over which the noise is refitted with every candidate."""
-    plain = [Shape(f, r, 0.0, 0) for f in _FLICKER for r in _WALK]
-    steep = [Shape(f, 0.0, c, a) for a in (3, 4) for c in _STEEP for f in _STEEP_FLICKER]
+    plain = [Shape(f, r, 0.0, 0) for f in _CORNERS for r in _CORNERS]
+    steep = [Shape(0.0, 0.0, c, a) for a in (3, 4) for c in _CORNERS if c]
     return plain + steep
 
 
 GRID = shapes()
 IS_STEEP = np.array([bool(s.slope) for s in GRID])
 #: Odds of twenty to one, as a difference of log likelihoods: by less nothing is told from what
-#: competes with it. Steep noise, which can stand for any smooth effect, starts so far behind.
+#: competes with it. Steep noise, which can stand for any smooth effect, starts so far behind. As a
+#: chance, the usual level of one test.
 NATS = 3.0
+USUAL = float(np.exp(-NATS))
 LOG_PRIOR = -NATS * IS_STEEP
 
 

@@ -17,13 +17,10 @@ from .likelihood import Base, fit_base, ratios, session_scale
 from .noise import GRID, IS_STEEP
 
 #: Times the usual distance from the median of so many neighbours.
-_OUTLIER, _NEAR = 6.0, 9
+OUTLIER, _NEAR = 6.0, 9
 #: Standard deviation, before anything is seen, of what an acceleration of 1 g adds: dps, by the
 #: data sheets of MEMS gyroscopes. At rest it varies little, and follows what else it likes.
 _PER_G = 0.1
-#: By how much squares of acceleration are shrunk, of their own whitened squares: at rest their sum
-#: is gravity's, a constant, and beside acceleration nothing but noise tells its coefficient.
-_SUM_OF_SQUARES = 1e-3
 
 #: Further nuisances: blocks of each session, or these prepared.
 Events = list[list[np.ndarray]]
@@ -155,8 +152,6 @@ class Regression:
     def _shrink(self, products: np.ndarray, terms: Terms) -> None:
         """Shrink terms that are the first of (S, ..., J, J), each session's share of it alike."""
         for i, term in enumerate(terms):
-            if is_of_force(term) and term.power == 2:
-                products[..., i, i] *= 1.0 + _SUM_OF_SQUARES
             known = self._precision.get(term, self._of_data_sheets * is_of_force(term))
             products[..., i, i] += known / len(self.sessions)
 
@@ -232,7 +227,7 @@ def _without_outliers(residual: np.ndarray) -> tuple[np.ndarray, int]:
             continue
         middle = median_filter(column[good], _NEAR, mode="nearest")
         off = column[good] - middle
-        bad = np.abs(off) > _OUTLIER * max(1.4826 * np.median(np.abs(off)), 1e-12)
+        bad = np.abs(off) > OUTLIER * max(1.4826 * np.median(np.abs(off)), 1e-12)
         out[np.flatnonzero(good)[bad], a] = middle[bad]
         count += int(bad.sum())
     return out, count

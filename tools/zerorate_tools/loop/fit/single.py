@@ -25,11 +25,10 @@ from .shrunk import has_play_operators
 
 #: Pieces, and the turns in which they are left out: each turn has pieces far apart.
 PIECES, FOLDS = 20, 10
-#: Blocks of a piece, at least, and the share of a piece that the gap on either side has.
-LEAST_OF_A_PIECE, _GAP_SHARE = 3, 1 / 8
+#: Blocks of a piece, at least.
+LEAST_OF_A_PIECE = 3
 #: Shares of the range of temperature by which it turns back in another pass, and moves in a hold.
 _TURNS_BACK, _HOLD = 0.25, 0.05
-_WORTH = 0.1
 WEAKER = (
     f"One recording only: it was cut into {PIECES} pieces, which were left out in {FOLDS} turns. "
     "Each was judged by a model fitted to the others. The same pieces chose the effects, so the "
@@ -50,12 +49,17 @@ def fold_of(session: Session) -> np.ndarray:
     fast a piece is short, and what is left out of it little.
     """
     there = np.flatnonzero(session.available)
-    pieces = min(PIECES, max(1, len(there) // LEAST_OF_A_PIECE))
+    pieces = pieces_of(len(there))
     way = np.minimum(_way(session, there), len(there) / (pieces * LEAST_OF_A_PIECE))
     piece = np.floor((np.cumsum(way) - way / 2) / way.sum() * pieces).astype(int)
     ends = there[np.flatnonzero(np.diff(piece))]
     each = piece[np.r_[np.flatnonzero(np.diff(piece)), len(piece) - 1]]
     return each[np.searchsorted(ends, np.arange(session.blocks))] % min(FOLDS, pieces)
+
+
+def pieces_of(blocks: int) -> int:
+    """Into how many pieces so many blocks with a rate are cut."""
+    return min(PIECES, max(1, blocks // LEAST_OF_A_PIECE))
 
 
 def pass_of(session: Session) -> np.ndarray:
@@ -78,11 +82,6 @@ def _way(session: Session, there: np.ndarray) -> np.ndarray:
         return np.ones(len(there))
     moved = np.abs(np.gradient(session.block_mean(session.sources["temp"])[there]))
     return 0.5 + 0.5 * moved / max(moved.mean(), 1e-12)
-
-
-def gap_blocks(session: Session) -> int:
-    """Blocks at either side of a piece that are neither fitted nor judged in its turn."""
-    return max(1, int(_GAP_SHARE * session.available.sum() / PIECES))
 
 
 class PiecesByLine:
@@ -121,9 +120,9 @@ class PiecesByLine:
     def _leave_out(self, fold: np.ndarray) -> None:
         self.fold = fold
         self._known: dict[tuple[tuple[Term, ...], bytes | None], np.ndarray] = {}
-        near = np.ones(2 * gap_blocks(self.session) + 1, bool)
         left = [fold == k for k in range(fold.max() + 1)]
-        self.parts = [_only(self.session, ~binary_dilation(one, near)) for one in left]
+        # a block at either side of a piece is neither fitted nor judged in its turn
+        self.parts = [_only(self.session, ~binary_dilation(one)) for one in left]
 
     def __call__(self, straight: Terms, found: Terms, candidate: Terms) -> np.ndarray:
         """(folds,) nats by which each turn's pieces are better predicted with the candidate."""
@@ -199,13 +198,14 @@ def is_instant(term: Term) -> bool:
 def nats(before: np.ndarray, after: np.ndarray, blocks: Sequence[int] | np.ndarray) -> np.ndarray:
     """(folds,) nats gained, from (folds, 3) squares left before and after in so many blocks each.
 
-    Every piece has a noise of its own, so that one far from what the others show, where both are
-    far off, does not drown the rest. It counts as a tenth of its blocks, neighbours being alike.
+    Every turn has a noise of its own, so that one far from what the others show, where both are
+    far off, does not drown the rest. A piece counts as one block, neighbours being alike.
     """
     count = np.asarray(blocks, float)[:, None]
     shown = (count > 0) & (before > 0) & (after > 0) & np.isfinite(before + after)
     ratio = np.log(np.where(shown, before, 1.0) / np.where(shown, after, 1.0))
-    return (0.5 * _WORTH * count * ratio).sum(axis=1)
+    worth = pieces_of(int(count.sum())) / max(count.sum(), 1.0)
+    return (0.5 * worth * count * ratio).sum(axis=1)
 
 
 def held(term: Term, sessions: Sequence[Session]) -> Term:

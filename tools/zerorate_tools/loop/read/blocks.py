@@ -105,7 +105,7 @@ _WANTED_BLOCKS = 150
 _MOST_BLOCKS = 1500
 _MOST_WITH_GAPS = 250
 _LEAST_STILL = 0.25
-_BRIDGE, _BRIDGED_SHARE = 5, 0.1
+_BRIDGE, BRIDGED_SHARE = 5, 0.1
 
 
 def block_seconds(ticks: list[Ticks]) -> float:
@@ -133,7 +133,7 @@ def can_be_bridged(available: np.ndarray) -> bool:
     """Whether the blocks missing are few and apart."""
     longest = np.diff(runs(~available)).max(initial=0)
     missing = int((~available).sum())
-    return bool(longest <= _BRIDGE and missing <= _BRIDGED_SHARE * len(available))
+    return bool(longest <= _BRIDGE and missing <= BRIDGED_SHARE * len(available))
 
 
 def _whole_ticks(ticks: list[Ticks], want_s: float) -> float:

@@ -103,8 +103,6 @@ def is_supply(name: str) -> bool:
 #: Blocks beyond either limit of a source's range, and the further share of all blocks.
 _FEW, _FEW_SHARE = 1, 0.01
 
-#: Lags in s of the rates of temperature that a part follows which is late by seconds.
-_LATE_S = (1.0, 8.0)
 #: Lags in s of all parts that may be late, each three times the last: between two nothing is lost.
 _LAGS_S = (5.0, 15.0, 45.0, 135.0, 405.0, 1215.0)
 
@@ -206,12 +204,9 @@ def lags(sessions: list[Session]) -> list[Term]:
 def late(sessions: list[Session]) -> list[Candidate]:
     """What a part adds that is late behind its thermometer by seconds, or early: the rate of
     temperature times the slope of the bias, which bends with temperature."""
-    rates = [Term("temp", lag_s=lag, lag_mode="rate") for lag in _LATE_S]
-    return [
-        Candidate("thermal-rate", (r, replace(r, second="temp", second_centre=mean)), "catalogue")
-        for mean in _mean_degc(sessions)
-        for r in rates
-    ]
+    rate = Term("temp", lag_s=_LAGS_S[0], lag_mode="rate")
+    products = (replace(rate, second="temp", second_centre=mean) for mean in _mean_degc(sessions))
+    return [Candidate("thermal-rate", (rate, product), "catalogue") for product in products]
 
 
 def _mean_degc(sessions: list[Session]) -> list[float]:
@@ -244,8 +239,8 @@ def _is_finite(candidate: Candidate, sessions: Sequence[Session]) -> bool:
 
 
 #: Below this peak-to-peak of block means a source says nothing.
-_SMALLEST = {"temp": 0.3, "acc_x": 0.1, "acc_y": 0.1, "acc_z": 0.1}
-_SMALLEST |= {"rate_x": 2.0, "rate_y": 2.0, "rate_z": 2.0}
+SMALLEST = {"temp": 0.3, "acc_x": 0.1, "acc_y": 0.1, "acc_z": 0.1}
+SMALLEST |= {"rate_x": 2.0, "rate_y": 2.0, "rate_z": 2.0}
 
 
 def varies(name: str, sessions: list[Session]) -> bool:
@@ -253,4 +248,4 @@ def varies(name: str, sessions: list[Session]) -> bool:
     if name == "time":
         return True
     known = [_known(s, name, False) for s in sessions]
-    return max(np.ptp(k) for k in known if len(k)) > _SMALLEST.get(name, 1e-12)
+    return max(np.ptp(k) for k in known if len(k)) > SMALLEST.get(name, 1e-12)

@@ -25,10 +25,6 @@ LEVEL = {"catalogue": 2.5e-3, "generic": 5e-5, "step": 2e-3}
 #: half its size, can spare (weighted Bonferroni: Genovese, Roeder and Wasserman 2006, Biometrika
 #: 93, 509).
 WEIGHT = {"time-drift": 6.0, "power-on-transient": 6.0}
-#: The chance by the likelihood, all of its kind that were tried paid for, above which a drift is
-#: not looked at, and pieces alone tell of no memory: of one of real parts it is below 0.0001, of
-#: seven that noise feigned it was 1.
-LIKELY = 0.01
 
 
 @dataclass

@@ -20,11 +20,12 @@ from .catalogue import Candidate
 from .decide import Decision
 
 #: By how much the lowest frequencies' share of the noise differs between the axes of one part: the
-#: scale of Student's t of three degrees of freedom, in nats of variance.
-_SPREAD, _DOF = 0.7, 3
-#: As many slopes as the noise's colour, known from all other frequencies, is worth beside the
-#: slopes themselves: moderated variance (Smyth 2004, Stat. Appl. Genet. Mol. Biol. 3, 3).
-_WORTH = 4.0
+#: scale of Student's t, in nats of variance.
+_SPREAD = 0.7
+#: Its degrees of freedom; and as many slopes as the noise's colour, known from all other
+#: frequencies, is worth beside the slopes themselves: moderated variance (Smyth 2004, Stat. Appl.
+#: Genet. Mol. Biol. 3, 3).
+_DOF = 4
 _LOWEST = 2
 
 
@@ -60,8 +61,8 @@ def chance(regression: Regression, terms: Terms, candidate: Terms) -> float:
     of_size = chi2.sf(ratio_with_common_colour(regression, terms, candidate), axes)
     mean, spread = repeats(regression, terms, candidate)
     free = axes * (len(regression.sessions) - 1)
-    between = (spread + _WORTH) / (free + _WORTH)
-    return together(of_size, f.sf(mean / axes / between, axes, free + _WORTH))
+    between = (spread + _DOF) / (free + _DOF)
+    return together(of_size, f.sf(mean / axes / between, axes, free + _DOF))
 
 
 def together(*chances: float) -> float:
@@ -133,7 +134,7 @@ def smallest_square(tried: float, axes: int, sessions: int) -> float:
 
 
 def _square(level: float, axes: int, sessions: int) -> float:
-    free = axes * (sessions - 1) + _WORTH
+    free = axes * (sessions - 1) + _DOF
 
     def excess(square: float) -> float:
         chances = chi2.sf(square, axes), f.sf(square / axes, axes, free)

@@ -11,11 +11,12 @@ from scipy.stats import chi2, norm
 from ...model.term import Term, Terms
 from ..fit.cross_products import CrossProducts
 from ..fit.likelihood import LEAST_OWN, Base
+from ..fit.noise import USUAL
 from ..fit.regression import Regression
 from ..read.sessions import Session, block_basis
 from . import drift_test
 from .catalogue import Candidate
-from .decide import LIKELY, WEIGHT, effective, smallest_ratio
+from .decide import WEIGHT, effective, smallest_ratio
 
 _POWER = 0.9
 
@@ -69,7 +70,7 @@ class MultipleTesting:
     def least_ratio(self, c: Candidate) -> float:
         """The likelihood ratio below which a candidate is not looked at."""
         if self.is_by_time(c):
-            return float(chi2.isf(LIKELY, 3))
+            return float(chi2.isf(USUAL, 3))
         return smallest_ratio(c.family, 3 * len(c.terms), self.tried(c))
 
     def needed(self, c: Candidate) -> float:

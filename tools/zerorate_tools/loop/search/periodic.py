@@ -5,17 +5,16 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...model.term import Terms, evaluate
+from ..read.blocks import BRIDGED_SHARE
 from ..read.lines import MOST, Line, Spectrum, find, spectrum
 from ..read.sessions import Session
 
 _SLOWEST_CYCLES = 10
-_MOST_BRIDGED = 0.1
 _LEAST_TICKS = 400
 _HANN_BINS = 2.0
 _SUBTRACTED = 0.25  # share of a line's power that what was subtracted may have there
 #: From here on a line is in the samples and averages out of the bias; slower ones are in the bias.
 QUICK_HZ = 0.5
-_FOLDED_HZ = 0.02  # how well a quick line's frequency is known
 
 
 def periodic(
@@ -25,13 +24,16 @@ def periodic(
     quick = _welch(train, holdout)
     slow = _slow(train, holdout, terms, coefficients)
     step_s = train[0].tick_s
-    return [*quick, *(s for s in slow if not any(_folds(q, s, step_s) for q in quick))][:MOST]
+    known_hz = train[0].welch.step_hz if train[0].welch else 0.0
+    own = (s for s in slow if not any(_folds(q, s, step_s, known_hz) for q in quick))
+    return [*quick, *own][:MOST]
 
 
-def _folds(quick: Line, slow: Line, step_s: float) -> bool:
-    """Whether a slow line is a quick one as means over ticks show it."""
+def _folds(quick: Line, slow: Line, step_s: float, known_hz: float) -> bool:
+    """Whether a slow line is a quick one, whose frequency is known so well, as means over ticks
+    show it."""
     alias = abs(quick.hz - round(quick.hz * step_s) / step_s)
-    return abs(alias - slow.hz) < _FOLDED_HZ
+    return abs(alias - slow.hz) < known_hz
 
 
 def _slow(
@@ -73,7 +75,7 @@ def _left(session: Session, terms: Terms, coefficients: np.ndarray) -> np.ndarra
     rate = session.ticks_dps
     if rate is None or len(rate) < _LEAST_TICKS:
         return None
-    if (~np.isfinite(rate).all(axis=1)).mean() > _MOST_BRIDGED:
+    if (~np.isfinite(rate).all(axis=1)).mean() > BRIDGED_SHARE:
         return None
     return rate - _model(session, terms, coefficients)
 

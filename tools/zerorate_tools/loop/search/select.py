@@ -22,8 +22,6 @@ from .naming import name_found
 from .refine import drawn, refined
 from .selection import Found, Selection, fits_in_slots
 
-#: Kinds of effect that are tried at a time: the best four by their likelihood.
-_KINDS_TRIED = 4
 #: Beside which there is no bend.
 _BENDS = ("temperature-quadratic", curve.KIND)
 
@@ -210,7 +208,6 @@ class Search:
             c = self.pool[i]
             if (
                 c.kind in kinds
-                or len(kinds) >= _KINDS_TRIED
                 or c.label in self.dropped
                 or not fits_in_slots([*self.terms(), *c.slots], self.taken)
             ):

@@ -11,7 +11,7 @@ from scipy.special import softmax
 from ...model.model import MOST_CHANNELS, MOST_PLAYS, MOST_RINGS, MOST_SLOTS, MOST_TABLES
 from ...model.term import Term, Terms
 from ..fit.line import by_axis, less_slope, ordinary, shrunk, with_line
-from ..fit.noise import NATS
+from ..fit.noise import USUAL
 from ..fit.regression import Regression
 from ..fit.shrunk import has_play_operators
 from ..read.sessions import OWN_SOURCES
@@ -38,9 +38,7 @@ class Found:
         nats = {own: 0.0, **self.rivals}
         names = sorted(nats, key=lambda name: -nats[name])
         chances = softmax([nats[name] for name in names])
-        return {
-            name: float(p) for name, p in zip(names, chances) if name == own or p > np.exp(-NATS)
-        }
+        return {name: float(p) for name, p in zip(names, chances) if name == own or p > USUAL}
 
     @property
     def confounded_with(self) -> list[str]:

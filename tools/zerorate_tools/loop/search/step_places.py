@@ -14,15 +14,13 @@ from ..fit.likelihood import fit_base, ratios
 from ..fit.regression import Regression
 from ..read.sessions import Session
 
-#: Blocks at the end where a step cannot be told from the offset.
-EDGE = 5
-#: Blocks at the start where none is looked for: what remembers temperature wakes there.
-_WAKES = 10
 #: Quarters of a block at which a step is looked for around the best place.
 _QUARTERS = np.arange(-3, 4) / 4
 #: Blocks from the middle of a ramp to either end, and shares of them that it is off the place.
 _RAMPS, _OFF = np.array([2.0, 4.0, 8.0]), np.array([-0.5, 0.0, 0.5])
-LONGEST = float(_RAMPS.max())
+#: Blocks at either end where none is looked for: there it is told neither from a ramp nor, at the
+#: end, from the offset, and at the start what remembers temperature wakes.
+LONGEST = int(_RAMPS.max())
 
 #: (session, places, ratios) of some sessions.
 Ratios = list[tuple[int, np.ndarray, np.ndarray]]
@@ -125,12 +123,12 @@ def best_place(regression: Regression, terms: Terms) -> tuple[Place | None, Rati
 
 def tried(session: Session) -> int:
     """How many places a session has, in motion or not."""
-    return max(0, session.blocks + 1 - EDGE - _WAKES)
+    return max(0, session.blocks + 1 - 2 * LONGEST)
 
 
 def _ground(session: Session) -> np.ndarray:
     """Blocks before which a step may be: in motion a scale factor's error leaps, not the bias."""
     moved = session.moved
     free = ~(moved | np.r_[False, moved[:-1]])
-    at = np.arange(_WAKES, session.blocks - EDGE + 1)
+    at = np.arange(LONGEST, session.blocks - LONGEST + 1)
     return at[free[at]] if len(at) else at

@@ -12,28 +12,21 @@ import numpy as np
 from scipy.stats import chi2
 
 from ...model.term import Term, Terms
+from ..fit.noise import NATS
 from ..fit.regression import Events, Regression, predicted
 from ..fit.shrunk import shrink
 from ..fit.surrogates import NullRatios
 from ..read.sessions import Session
-from .catalogue import Candidate, candidates, lags, late
+from .catalogue import SMALLEST, Candidate, candidates, lags, late
 from .decide import LEVEL
 from .drift_test import follows_time
 from .refine import refined
-from .step_places import EDGE, LONGEST, Ratios, best_place, beyond_ramps, heavisides, tried
+from .step_places import LONGEST, Ratios, best_place, beyond_ramps, heavisides, tried
 
 MOST_PER_SESSION = 4
-_AWAY = 15  # blocks from a step at which a step beside it no longer shows it
 #: Blocks by which the place of a step may be off, or move when other terms stand beside it; and
 #: between two that undo each other up to which they are a disturbance.
 NEAR = 2
-#: Blocks without rest across which no change is abrupt, if the temperature moved by more in them.
-_UNSEEN, _UNSEEN_DEGC = 3, 1.0
-#: Level of every step but the surest of one search: recordings with several are the rarer.
-_BESIDE_OTHERS = 1e-4
-#: What a step must explain more than the best ramp in its place, as twice a gain in log likelihood:
-#: less than nothing, for noise that flickers makes a ramp of a small step.
-_LEAST_BEYOND = -4.0
 #: The likelihood ratio of a form over channels beside which steps must stand.
 _A_FORM = 45.0
 
@@ -170,7 +163,7 @@ def standing(regression: Regression, terms: Terms, recordings: int, kept: Events
         if step is None:
             break
         step.ratio = _gain(regression, terms, steps, step, kept)
-        if chi2.sf(step.ratio, 3) * _tried(regression) * recordings > _level(len(steps)):
+        if chi2.sf(step.ratio, 3) * _tried(regression) * recordings > LEVEL["step"]:
             break
         steps.append(step)
         _set(regression, steps, kept)
@@ -206,12 +199,7 @@ def _stand(
         p_value = _survival(step.ratio, away) * _tried(regression) * recordings
         step.p_value = min(1.0, p_value)
     _set(regression, steps, kept)
-    return all(p < _level(k) for k, p in enumerate(sorted(s.p_value for s in steps)))
-
-
-def _level(steps: int) -> float:
-    """The level of one more step beside so many."""
-    return _BESIDE_OTHERS if steps else LEVEL["step"]
+    return all(s.p_value < LEVEL["step"] for s in steps)
 
 
 def _tried(regression: Regression) -> int:
@@ -231,7 +219,7 @@ def _away(regression: Regression, steps: list[Step], every: Ratios) -> np.ndarra
     """Ratios at the places away from every step."""
     out = []
     for s, at, ratios in every:
-        near = [np.abs(at - step.block) <= _AWAY for step in steps if step.session == s]
+        near = [np.abs(at - step.block) <= 2 * LONGEST for step in steps if step.session == s]
         out.append(ratios[~np.any(near, axis=0)] if near else ratios)
     return np.concatenate(out) if out else np.zeros(0)
 
@@ -243,7 +231,7 @@ def _survival(ratio: float, away: np.ndarray, axes: int = 3) -> float:
     of mean and variance takes its place where that is longer. Neighbours are much alike, so that
     what theory knows counts for as much as all of them.
     """
-    if len(away) < EDGE:
+    if len(away) < LONGEST:
         return float(chi2.sf(ratio, axes))
     mean, variance = np.mean([(axes, 2 * axes), (away.mean(), away.var())], axis=0)
     by_theory, by_places = chi2.sf(ratio, axes), NullRatios.of(mean, variance, axes).survival(ratio)
@@ -275,7 +263,7 @@ def _is_no_ramp(
     far = [s for s in steps if s.session != step.session or abs(s.block - step.block) > LONGEST]
     _set(regression, far, kept)
     beyond = beyond_ramps(regression, terms, step.session, step.block - step.share)
-    return beyond > _LEAST_BEYOND
+    return beyond > -2 * NATS
 
 
 def _is_unseen(session: Session, block: int) -> bool:
@@ -286,7 +274,7 @@ def _is_unseen(session: Session, block: int) -> bool:
     if not 0 < at < len(there):
         return False
     first, last = int(there[at - 1]), int(there[at])
-    if last - first <= _UNSEEN:
+    if last - first <= NEAR:
         return False
     temp = session.sources.get("temp")
-    return temp is None or np.ptp(session.block_mean(temp)[first : last + 1]) > _UNSEEN_DEGC
+    return temp is None or np.ptp(session.block_mean(temp)[first : last + 1]) > SMALLEST["temp"]

@@ -9,16 +9,16 @@ from itertools import pairwise
 
 import numpy as np
 from scipy.stats import chi2
+from zerorate.settings import DEFAULTS
 
 from ...model.term import Term, Terms
 from ..fit.common_cause import RARE
-from ..fit.regression import Regression
+from ..fit.regression import OUTLIER, Regression
 from ..read.sessions import Session
 from .steps import MOST_PER_SESSION, NEAR, Step, standing, steps_and_lags
 
-#: Ticks around a moment in which the accelerometer is looked at; what it must see, in g and in
-#: times its usual change.
-_MOMENT, _SEEN_G, _SEEN = 10, 0.02, 6.0
+#: Ticks around a moment in which the accelerometer is looked at.
+_MOMENT = 10
 
 
 def remove_steps(sessions: Sequence[Session]) -> list[Session]:
@@ -138,7 +138,7 @@ def _by_accelerometer(session: Session, first: int, last: int) -> tuple[int | No
     seen = np.maximum(change, shaken - np.median(shaken))
     a, b = max(0, first - _MOMENT), min(len(seen), last + _MOMENT)
     at = a + int(seen[a:b].argmax())
-    if seen[at] < max(_SEEN_G, _SEEN * np.median(seen)):
+    if seen[at] < max(DEFAULTS["still_g"], OUTLIER * np.median(seen)):
         return None, ""
     said = f"the accelerometer saw {seen[at]:.2g} g at that moment: mechanical stress or a knock"
     return at, said

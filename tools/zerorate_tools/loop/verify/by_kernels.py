@@ -13,12 +13,10 @@ from ...model import CannotDeploy, Model, Slot, drafted
 from ...model.term import Terms
 from ...recordings import Scales
 from ...replay.samples import Frames
-from ..fit.single import PiecesByLine, is_instant
+from ..fit.single import LEAST_OF_A_PIECE, PiecesByLine, is_instant
 from ..read.sessions import Session
 from .firmware import Firmware, Refused, at_once, rows
 from .power_on import BlockMeans, PowerOn
-
-_LEAD_BLOCKS = 3
 
 
 class PiecesByKernels(PiecesByLine):
@@ -119,7 +117,7 @@ class PiecesByKernels(PiecesByLine):
                 continue
             at = p.blocks(frames)
             for first, last in self._stretches(at[0], at[-1] + 1):
-                lead, a, b = np.searchsorted(at, (first - _LEAD_BLOCKS, first, last))
+                lead, a, b = np.searchsorted(at, (first - LEAST_OF_A_PIECE, first, last))
                 bias = devices[self.fold[first]].run(rows(frames, lead, b), learn=False)
                 means.add(rows(frames, a, b), bias[a - lead :])
         left = np.where(p.scored[:, None], p.rate_dps - means.blocks_dps(), np.nan)

@@ -15,14 +15,13 @@ from dataclasses import replace
 import numpy as np
 from scipy.stats import wilcoxon
 
+from ..fit.noise import USUAL
 from ..read.sessions import Session
 from ..search.drift_test import comes_again, follows_time
 from ..search.selection import Selection
 from .judge import Judgement, judge, residuals, rms_dps
 
 AGAIN = "it does not come again alike in what was held out"
-#: The usual level of one test.
-_LEVEL = 0.05
 
 
 def prune_by_holdout(selection: Selection, holdout: list[Session]) -> tuple[Selection, Judgement]:
@@ -132,7 +131,7 @@ def without_unshown(
     gained = [_gained(left, after[-1], pieces) for left in rest]
     chances = [float(wilcoxon(g, zero_method="zsplit", alternative="greater")[1]) for g in gained]
     least = int(np.argmax(chances))
-    if chances[least] <= _LEVEL:
+    if chances[least] <= USUAL:
         return selection
     better, number = (gained[least] > 0).sum(), len(gained[least])
     why = f"better on {better} of {number} pieces left out, which may be chance"
