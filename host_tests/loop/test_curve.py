@@ -23,9 +23,9 @@ def by_pieces(sessions, line=(), pool=(), taken=0):
 @pytest.mark.parametrize(
     ("slots", "p", "accepted", "alike", "kept"),
     [
-        *((8, 0.049, True, False, True), (8, 0.051, True, False, False)),
-        *((8, 0.009, False, False, False), (8, 0.009, True, True, False)),
-        (0, 0.009, True, False, False),
+        *((8, 0.9e-3, True, False, True), (8, 1.1e-3, True, False, False)),
+        *((8, 0.9e-3, False, False, False), (8, 0.9e-3, True, True, False)),
+        (0, 0.9e-3, True, False, False),
     ],
 )
 def test_a_memory_of_one_recording_is_likely_and_no_hysteresis(
@@ -62,8 +62,8 @@ def test_without_a_line_over_temperature_there_is_no_curve():
 @pytest.mark.parametrize(
     ("degc", "p", "accepted", "taken"),
     [
-        *((10.0, 0.049, True, True), (10.0, 0.051, True, False), (10.0, 0.009, False, False)),
-        *((0.1, 0.011, True, True), (0.1, 1.0, True, True)),  # where it hardly varies, any
+        *((10.0, 0.9e-3, True, True), (10.0, 1.1e-3, True, False), (10.0, 0.9e-3, False, False)),
+        *((0.1, 1.1e-3, True, True), (0.1, 1.0, True, True)),  # where it hardly varies, any
     ],
 )
 def test_a_curve_is_likely_and_bends_in_the_slots_that_others_leave(

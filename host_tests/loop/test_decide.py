@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 from zerorate_tools.loop.fit.regression import Regression
-from zerorate_tools.loop.search import decide, drift_test
+from zerorate_tools.loop.search import decide
 from zerorate_tools.loop.search.multiple_testing import MultipleTesting
 from zerorate_tools.model.term import Term
 
@@ -78,14 +78,10 @@ POOL = [
 ]
 
 
-@pytest.mark.parametrize("power_ons", [True, False])
-def test_what_follows_time_is_asked_other_questions_where_it_can_come_again(sessions, power_ons):
-    testing = MultipleTesting(Regression(sessions), [*POOL, DRIFT], (), (), power_ons)
-    assert testing.is_by_time(DRIFT) is power_ons and not testing.is_by_time(BOTH)
+def test_a_candidate_needs_what_its_family_s_level_asks_of_all_tried(sessions):
+    testing = MultipleTesting(Regression(sessions), [*POOL, DRIFT], (), ())
     tried, of_two = testing.tried(DRIFT), testing.tried(BOTH)
     one = decide.smallest_ratio("catalogue", 3, tried)
-    again = chi2.isf(np.exp(-3), 3), drift_test.smallest_square(tried, 3, 3)
-    told = testing.least_ratio(DRIFT), testing.needed(DRIFT)
-    assert told == pytest.approx(again if power_ons else (one, one))
+    assert (testing.least_ratio(DRIFT), testing.needed(DRIFT)) == (one, one)
     assert testing.least_ratio(BOTH) == decide.smallest_ratio("catalogue", 6, of_two)
     assert testing.needed(BOTH) == decide.smallest_ratio("catalogue", 3, of_two)

@@ -259,31 +259,7 @@ def test_an_effect_goes_where_both_the_likelihood_and_the_error_speak_against_it
     assert less.withdrawn == ([] if stays else [("vibration", reason)])
 
 
-DRIFT = found(Term("time"), kind="time-drift")
-
-
-@pytest.mark.parametrize("again", [True, False])
-def test_what_follows_time_alone_must_come_again(monkeypatch, again):
-    made, asked = [dense.made(seed, 40) for seed in (1, 2, 3, 4)], []
-    for s in made:
-        s.rate_dps += np.arange(40.0)[:, None]
-
-    def comes_again(whole, *of):
-        asked.append((len(whole.sessions), *of))
-        return again
-
-    monkeypatch.setattr(prune, "comes_again", comes_again)
-    less, _ = prune.prune_by_holdout(selected(made[:3], DRIFT, line=(B,)), made[3:])
-    assert asked[0] == (4, [B], DRIFT.candidate, 1.0)
-    assert (DRIFT in less.found) is again
-    assert again or prune.AGAIN in less.withdrawn[0][1]
-
-
-@pytest.mark.parametrize("how", [{}, {"alone": True, "judged_again": True}, {"alone": True}])
-def test_one_recording_cannot_say_whether_it_comes_again(monkeypatch, how):
-    monkeypatch.setattr(prune, "comes_again", never)
-    made = [dense.made(seed, 40) for seed in (1, 4)]
-    selection = selected(made[:1], DRIFT, **how)
-    alone = selection.stands_alone
-    less, _ = prune.prune_by_holdout(selection, made[:1] if alone else made[1:])
-    assert not alone or less is selection
+def test_one_recording_alone_has_nothing_held_out_to_speak_against_it():
+    made = [dense.made(1, 40)]
+    selection = selected(made, found(A), alone=True)
+    assert prune.prune_by_holdout(selection, made)[0] is selection

@@ -4,12 +4,9 @@ import numpy as np
 import pytest
 from zerorate_bench.loop.simulated import flicker, simulate
 from zerorate_tools.allan import Noise, overlapping
-from zerorate_tools.loop.fit.regression import Regression
 from zerorate_tools.loop.read.lines import SEGMENT, Segments, find, spectrum
 from zerorate_tools.loop.read.sessions import Session
-from zerorate_tools.loop.search import drift_test
 from zerorate_tools.loop.search.select import Search
-from zerorate_tools.model.term import Term
 
 
 def session(rate):
@@ -35,24 +32,6 @@ def test_the_deviation_of_fitted_noise_is_the_deviation_of_the_noise():
 def test_too_short_a_rate_has_no_deviation():
     with pytest.raises(ValueError, match="9 samples"):
         overlapping(np.zeros((8, 3)), 1.0)
-
-
-DRIFT = (Term("time"),)
-
-
-def bare_sessions(seed, sessions=3):
-    """Sessions of nothing but noise."""
-    device = simulate(seed, sessions=sessions, bare=True)
-    for s, alone in zip(device.sessions, device.noise_dps):
-        s.rate_dps = alone
-    return device.sessions
-
-
-def test_in_noise_alone_the_chance_is_hardly_smaller_than_it_says():
-    chances = [drift_test.chance(Regression(bare_sessions(seed)), [], DRIFT) for seed in range(120)]
-    # Fitted on the same hour, the noise's colour takes some drift of its own for an effect.
-    assert np.mean(np.array(chances) < 0.1) < 0.25
-    assert min(chances) > drift_test.RARE
 
 
 @pytest.mark.parametrize("seed", [5000012, 5000024])

@@ -54,16 +54,13 @@ def examiner():
     regression = SimpleNamespace(sessions=["s"], gains=gains)
     testing = SimpleNamespace(
         regression=regression, pool=[LAG, Candidate("two", (A, B), "catalogue"), VOLTS],
-        tried=lambda c: 3.0, is_by_time=lambda c: c is DRIFT, least_ratio=lambda c: 8.5,
+        tried=lambda c: 3.0, least_ratio=lambda c: 8.5,
     )  # fmt: skip
     return Examiner(testing, None)
 
 
-@pytest.mark.parametrize(("chance", "idle"), [(0.34e-3, True), (0.33e-3, False)])
-def test_an_effect_is_idle_where_the_rest_explains_it(examiner, monkeypatch, chance, idle):
+def test_an_effect_is_idle_where_the_rest_explains_it(examiner):
     assert examiner.is_idle(LAG, [A, B]) and not examiner.is_idle(LAG, [A])
-    monkeypatch.setattr(examine.drift_test, "chance", lambda r, rest, terms: chance)
-    assert examiner.is_idle(DRIFT, []) is idle
 
 
 @pytest.mark.parametrize(
@@ -95,9 +92,7 @@ def test_acceleration_adds_no_more_than_a_gyroscope_follows_it_by(reach_g, found
     r, pose = Regression([session]), Candidate("linear-acceleration", (Term("acc_x"),), "catalogue")
     alone = r.gains([], [pose.terms]).sum()
     r.heed_data_sheets([])
-    testing = SimpleNamespace(
-        regression=r, pool=[pose], tried=lambda c: 1.0, is_by_time=lambda c: False
-    )
+    testing = SimpleNamespace(regression=r, pool=[pose], tried=lambda c: 1.0)
     told = Examiner(testing, None)._by_likelihood(pose, [])
     assert alone > 300 and told.accepted is found and (told.ratio > 0.6 * alone) == found
 

@@ -264,3 +264,7 @@ def test_a_step_stands_beside_a_ramp_with_those_within_eight_blocks_taken_out(
 def test_two_are_the_same_within_two_blocks_of_one_session(second, same):
     assert listed._is_same(step(5), second) is same
     assert not listed._is_same(step(5), step(5, session=1))
+
+
+def test_more_steps_than_one_are_rarer():
+    assert (listed._level(0), listed._level(1), listed._level(3)) == (2e-3, 5e-5, 5e-5)

@@ -60,6 +60,11 @@ class Candidate:
         return list(dict.fromkeys(n for n in names if n != "one"))
 
     @property
+    def follows_time(self) -> bool:
+        """Whether it needs no channel but the clock."""
+        return not {*self.sources} - {"time"}
+
+    @property
     def label(self) -> str:
         """The kind, with the channels for forms of any channel."""
         channels = f"({', '.join(self.sources)})" if of_any_channel(self.kind) else ""

@@ -12,8 +12,8 @@ import numpy as np
 
 from ...model.model import MOST_SLOTS
 from ...model.term import Term, Terms
+from ..fit.common_cause import RARE
 from ..fit.line import less_slope
-from ..fit.noise import USUAL
 from ..fit.regression import Regression
 from ..fit.single import LEAST_OF_A_PIECE, PIECES, PiecesByLine
 from ..fit.smooth import curve_of
@@ -96,7 +96,7 @@ class ByPieces:
         smooth = smooth_curve(sessions, self.line, self.taken + len(beside) + kept)
         every = [*smooth, *self._kink(beside)]
         told = [self._judged(c, beside, c.terms[1:] or c.terms, 1) for c in every]
-        most = USUAL if varies("temp", sessions) else 1.0
+        most = RARE if varies("temp", sessions) else 1.0
         told = [f for f in told if f.decision.accepted and f.decision.p_value <= most]
         return sorted(told, key=_gained, reverse=True)
 
@@ -110,7 +110,7 @@ class ByPieces:
             return []
         best = refined(self.regression, [*straight, *beside], best)
         told = self._judged(best, beside, best.terms, len(own))
-        if not told.decision.accepted or told.decision.p_value > USUAL:
+        if not told.decision.accepted or told.decision.p_value > RARE:
             return []
         alike = is_like_hysteresis(straight, beside, best, self.pool, sessions)
         return [] if alike or cancels(sessions, [*straight, *beside], best.terms) else [told]

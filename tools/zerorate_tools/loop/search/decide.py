@@ -29,7 +29,7 @@ WEIGHT = {"time-drift": 6.0, "power-on-transient": 6.0}
 
 @dataclass
 class Decision:
-    """What the locks said of a candidate. tried: candidates that p_value has paid for."""
+    """What the locks said of a candidate."""
 
     accepted: bool
     p_value: float
@@ -37,7 +37,6 @@ class Decision:
     inflation: float = 1.0
     session_gains: np.ndarray = field(default_factory=lambda: np.zeros(0))
     reason: str = ""
-    tried: float = 1.0
 
     def on_pieces(
         self, judged: PiecesByLine, straight: Terms, found: Terms, candidate: Terms

@@ -7,12 +7,10 @@ import numpy as np
 from scipy.linalg import null_space
 
 from ...model.term import Term, Terms
-from ..fit.common_cause import RARE
 from ..fit.line import less_slope, ordinary
 from ..fit.regression import Regression, predicted
 from ..fit.single import PiecesByLine
 from ..read.sessions import Session
-from . import drift_test
 from .catalogue import Candidate
 from .decide import LEVEL, Decision, decide, family_p
 from .hysteresis import KIND, is_like_hysteresis, may_show
@@ -56,9 +54,6 @@ class Examiner:
 
     def is_idle(self, c: Candidate, rest: Terms) -> bool:
         """Whether the rest of the terms explain what an effect was taken for."""
-        if self.testing.is_by_time(c):
-            chance = drift_test.chance(self.regression, rest, c.terms)
-            return chance * self.testing.tried(c) > RARE
         return float(self.regression.gains(rest, [c.terms]).sum()) < self.testing.least_ratio(c)
 
     def _decision(
@@ -73,10 +68,7 @@ class Examiner:
     def _by_likelihood(self, best: Candidate, nuisances: Terms) -> Decision:
         r, tried = self.regression, self.testing.tried(best)
         ratio = float(r.gains(nuisances, [best.terms]).sum())
-        if self.testing.is_by_time(best):
-            decision = drift_test.considered(r, nuisances, best, ratio, tried)
-        else:
-            decision = decide(r, nuisances, best, ratio, tried, self.singles)
+        decision = decide(r, nuisances, best, ratio, tried, self.singles)
         if decision.accepted and is_rounding(r, nuisances, best, tried):
             reason = "the thermometer's coarse readings explain as much"
             return replace(decision, accepted=False, reason=reason)

@@ -6,15 +6,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.stats import chi2, norm
+from scipy.stats import norm
 
 from ...model.term import Term, Terms
 from ..fit.cross_products import CrossProducts
 from ..fit.likelihood import LEAST_OWN, Base
-from ..fit.noise import USUAL
 from ..fit.regression import Regression
 from ..read.sessions import Session, block_basis
-from . import drift_test
 from .catalogue import Candidate
 from .decide import WEIGHT, effective, smallest_ratio
 
@@ -25,15 +23,13 @@ _POWER = 0.9
 class MultipleTesting:
     """Of the candidates of one search.
 
-    straight, bend: the nuisances beside which they are tried; power_ons: whether the sessions are
-    several power-ons, at each of which what follows time must come again.
+    straight, bend: the nuisances beside which they are tried.
     """
 
     regression: Regression
     pool: list[Candidate]
     straight: tuple[Term, ...]
     bend: tuple[Term, ...]
-    power_ons: bool
     _paid: dict[str, float] = field(default_factory=dict, init=False)
 
     def tried(self, candidate: Candidate) -> float:
@@ -63,21 +59,12 @@ class MultipleTesting:
         ]
         return np.vstack([np.column_stack(of) for of in columns])
 
-    def is_by_time(self, c: Candidate) -> bool:
-        """Whether it follows time alone and there are power-ons at which it must come again."""
-        return self.power_ons and drift_test.follows_time(c)
-
     def least_ratio(self, c: Candidate) -> float:
         """The likelihood ratio below which a candidate is not looked at."""
-        if self.is_by_time(c):
-            return float(chi2.isf(USUAL, 3))
         return smallest_ratio(c.family, 3 * len(c.terms), self.tried(c))
 
     def needed(self, c: Candidate) -> float:
         """The likelihood ratio at which one column is found, where the noise is as it seems."""
-        if self.is_by_time(c):
-            sessions = len(self.regression.sessions)
-            return drift_test.smallest_square(self.tried(c), 3, sessions)
         return smallest_ratio(c.family, 3, self.tried(c))
 
 

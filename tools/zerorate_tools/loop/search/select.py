@@ -15,7 +15,6 @@ from ..read.sessions import Session
 from . import curve, hysteresis
 from .catalogue import Candidate, ranges
 from .catalogue import candidates as all_candidates
-from .drift_test import follows_time
 from .examine import Examiner
 from .multiple_testing import MultipleTesting, smallest_dps
 from .naming import name_found
@@ -57,8 +56,7 @@ class Search:
     @cached_property
     def testing(self) -> MultipleTesting:
         """What each candidate must reach, beside the bend that one recording may have shown."""
-        power_ons = len(self.regression.sessions) > 1
-        return MultipleTesting(self.regression, self.pool, self.straight, self.bend, power_ons)
+        return MultipleTesting(self.regression, self.pool, self.straight, self.bend)
 
     @cached_property
     def examiner(self) -> Examiner:
@@ -125,7 +123,7 @@ class Search:
         r, every = self.regression, self.pool
         if not self.judged_again:
             # what follows time alone must come again: only another power-on shows whether it does
-            every = [c for c in every if not follows_time(c)]
+            every = [c for c in every if not c.follows_time]
         self.pool = [c for c in every if c.kind not in curve.FORMS]
         if not curve.shows_a_curve(r.sessions[0]):
             self.refused.append((curve.KIND, "too few rests to tell by pieces left out"))

@@ -19,7 +19,6 @@ from ..fit.surrogates import NullRatios
 from ..read.sessions import Session
 from .catalogue import SMALLEST, Candidate, candidates, lags, late
 from .decide import LEVEL
-from .drift_test import follows_time
 from .refine import refined
 from .step_places import LONGEST, Ratios, best_place, beyond_ramps, heavisides, tried
 
@@ -72,7 +71,7 @@ def steps_and_lags(
     recordings: of one device, each searched by itself, which share the level.
     """
     beside, sessions = list(terms), regression.sessions
-    forms = [c for c in candidates(sessions) if not follows_time(c)] + late(sessions)
+    forms = [c for c in candidates(sessions) if not c.follows_time] + late(sessions)
     lagging = dict[Term, float]()
     while True:
         regression.set_events([])
@@ -163,7 +162,7 @@ def standing(regression: Regression, terms: Terms, recordings: int, kept: Events
         if step is None:
             break
         step.ratio = _gain(regression, terms, steps, step, kept)
-        if chi2.sf(step.ratio, 3) * _tried(regression) * recordings > LEVEL["step"]:
+        if chi2.sf(step.ratio, 3) * _tried(regression) * recordings > _level(len(steps)):
             break
         steps.append(step)
         _set(regression, steps, kept)
@@ -199,7 +198,12 @@ def _stand(
         p_value = _survival(step.ratio, away) * _tried(regression) * recordings
         step.p_value = min(1.0, p_value)
     _set(regression, steps, kept)
-    return all(s.p_value < LEVEL["step"] for s in steps)
+    return all(p < _level(k) for k, p in enumerate(sorted(s.p_value for s in steps)))
+
+
+def _level(steps: int) -> float:
+    """The level of one more step beside so many: recordings with several are the rarer."""
+    return LEVEL["generic" if steps else "step"]
 
 
 def _tried(regression: Regression) -> int:

@@ -2,11 +2,10 @@
 
 An effect that is there hardly ever makes a power-on that no fit has seen less likely; what noise
 alone made of the others does more often than not. Both the likelihood, which looks where the noise
-is small, and the plain error, which is what counts in the end, must speak against it. What follows
-time alone must come again: time passes in every power-on, where another cause may be at rest. And
-on no axis may the error grow: there the effect is left out, whatever the likelihood says, unless
-those found after it need it: with all of them the error is smaller than before it, and than with
-all but it.
+is small, and the plain error, which is what counts in the end, must speak against it. And on no
+axis may the error grow: there the effect is left out, whatever the likelihood says, unless those
+found after it need it: with all of them the error is smaller than before it, and than with all but
+it.
 """
 
 from collections.abc import Callable, Sequence
@@ -17,11 +16,8 @@ from scipy.stats import wilcoxon
 
 from ..fit.noise import USUAL
 from ..read.sessions import Session
-from ..search.drift_test import comes_again, follows_time
 from ..search.selection import Selection
 from .judge import Judgement, judge, residuals, rms_dps
-
-AGAIN = "it does not come again alike in what was held out"
 
 
 def prune_by_holdout(selection: Selection, holdout: list[Session]) -> tuple[Selection, Judgement]:
@@ -32,14 +28,11 @@ def prune_by_holdout(selection: Selection, holdout: list[Session]) -> tuple[Sele
     judgement = judge(selection, holdout)
     if selection.stands_alone:
         return selection, judgement
-    for i in [int(i) for i in judgement.gains.argsort()]:
+    for i in [int(i) for i in judgement.gains.argsort() if judgement.gains[i] < 0]:
         less = selection.without(i)
-        reason = _spoken_against(selection, judgement, i)
-        if reason is None:
-            continue
         without = judge(less, holdout)
-        if reason is AGAIN or without.after_rms <= judgement.after_rms:
-            said = (selection.found[i].candidate.label, _said(reason, judgement, without))
+        if without.after_rms <= judgement.after_rms:
+            said = (selection.found[i].candidate.label, _said(judgement, i, without))
             return prune_by_holdout(replace(less, withdrawn=[*less.withdrawn, said]), holdout)
     some = [*map(selection.first, range(len(selection.found))), selection]
     after = [_left(one, holdout) for one in some]
@@ -95,22 +88,10 @@ def _grown(errors: np.ndarray, i: int) -> str:
     return f"the error of what was held out grows: with it {with_it:.3g} mdps, without {now:.3g}"
 
 
-def _spoken_against(selection: Selection, judgement: Judgement, i: int) -> str | None:
-    """Why the i-th effect may have to go, None where nothing speaks against it."""
-    found = selection.found[i]
-    several = len(selection.regression.sessions) > 1
-    if several and follows_time(found.candidate):
-        rest = [*selection.straight, *selection.without(i).terms]
-        again = comes_again(judgement.whole, rest, found.candidate, found.decision.tried)
-        return None if again else AGAIN
-    if judgement.gains[i] < 0:
-        return f"what was held out speaks against it by {-judgement.gains[i]:.1f} nats"
-    return None
-
-
-def _said(reason: str, judgement: Judgement, without: Judgement) -> str:
-    with_it, now = 1e3 * judgement.after_rms, 1e3 * without.after_rms
-    return f"{reason}: error with it {with_it:.3g} mdps, without {now:.3g}"
+def _said(judgement: Judgement, i: int, without: Judgement) -> str:
+    nats, with_it, now = -judgement.gains[i], 1e3 * judgement.after_rms, 1e3 * without.after_rms
+    why = f"what was held out speaks against it by {nats:.1f} nats"
+    return f"{why}: error with it {with_it:.3g} mdps, without {now:.3g}"
 
 
 def without_unshown(
