@@ -217,7 +217,6 @@ def run_run(arguments: argparse.Namespace) -> None:
 
     if not arguments.state.parent.is_dir():
         raise InFile(arguments.state.parent, "no such folder", do="make it, or name another")
-    storage = store_file(arguments.state)
     options = _chip(arguments)
     model = _model_bytes(arguments.model) if arguments.model else b""
     fake = None
@@ -257,6 +256,7 @@ def run_run(arguments: argparse.Namespace) -> None:
         sinks.append(Datagrams(arguments.udp, arguments.remote))
     if arguments.metrics:
         sinks.append(Metrics(arguments.metrics, arguments.remote))
+    storage = store_file(arguments.state)
     if arguments.socket:  # last: it leaves a file where another is refused
         sinks.append(UnixSocket(arguments.socket))
     # systemd ends a service with SIGTERM, a closed terminal with SIGHUP; Ctrl-C does the same
