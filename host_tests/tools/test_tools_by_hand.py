@@ -143,10 +143,11 @@ def test_a_name_that_is_no_text_is_shown_with_what_stands_around_it(monkeypatch,
     assert f" {'a' * 40}\\udcff{'b' * 40}: not UTF-8" in said
 
 
-def test_the_system_s_own_words_come_with_the_file_s_name_and_what_to_do_of_a_bus():
+def test_the_system_s_own_words_come_with_the_file_s_name_and_what_to_do():
     for number, path, said in (
         (errno.ENOENT, "/dev/i2c-1", "is I2C switched on"),
         (errno.EACCES, "/dev/i2c-1", "usermod"),
+        (errno.ENOTDIR, "x/parts", "name a folder"),
     ):
         assert said in os_error_in_words(OSError(number, "words", path))
     assert os_error_in_words(OSError(errno.EACCES, "words", "x")) == "x: words"

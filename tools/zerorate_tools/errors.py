@@ -96,12 +96,19 @@ _BUS = {
     errno.ENOENT: "; is I2C switched on (raspi-config)? `ls /dev/i2c-*` says which there are",
     errno.EACCES: "; let yourself in: sudo usermod -aG i2c $USER, and log in again",
 }
+#: What to do about any other file.
+_FILE = {
+    errno.ENOENT: "; name one that is there",
+    errno.EISDIR: "; name a file",
+    errno.EEXIST: "; name a folder",
+    errno.ENOTDIR: "; name a folder",
+}
 
 
 def os_error_in_words(error: OSError) -> str:
-    """The system's own words behind the name of the file, with what to do where it is a bus."""
+    """The system's own words behind the name of the file, with what to do about it."""
     text = error.strerror or str(error) or type(error).__name__
     if not error.filename:
         return text
-    is_bus = str(error.filename).startswith("/dev/i2c-")
-    return f"{error.filename}: {text}" + (_BUS.get(error.errno or 0, "") if is_bus else "")
+    known = _BUS if str(error.filename).startswith("/dev/i2c-") else _FILE
+    return f"{error.filename}: {text}{known.get(error.errno or 0, '')}"
