@@ -85,7 +85,7 @@ def test_a_cause_nobody_recorded_is_never_confirmed_and_said_to_be_left():
 
 
 def test_a_path_that_repeats_without_a_temperature_is_told_by_time_and_never_confirmed():
-    device = simulate(14, [("power-on-transient", 5.0)])
+    device = simulate(16, [("power-on-transient", 5.0)])
     for s in device.sessions:
         s.sources.clear()
     analysis = analyse(device.sessions)

@@ -80,7 +80,7 @@ def test_a_hysteresis_of_a_pair_is_likelier_than_what_is_simpler(
     ],
 )
 def test_a_hysteresis_of_one_recording_passes_every_question(
-    answers, gain, rival, factor, nats, said
+    monkeypatch, answers, gain, rival, factor, nats, said
 ):
     told = {LOOP.terms: gain, (A,): rival - 1, (B,): rival, (C,): 50.0}
     by_line = lambda session, hold: (  # noqa: E731
@@ -88,7 +88,7 @@ def test_a_hysteresis_of_one_recording_passes_every_question(
     )
     shown = {"may_show": gain is not None, "fits_in_slots": gain != 99.0}
     answers(hysteresis, play_operators=LOOP.terms, _factor=factor, **shown)
-    hysteresis.PiecesByLine = by_line  # put back by `answers`
+    monkeypatch.setattr(hysteresis, "PiecesByLine", by_line)
 
     def judged(*of):
         assert of == ([D], (), (TEMP, *LOOP.terms))

@@ -21,6 +21,9 @@ OUTLIER, _NEAR = 6.0, 9
 #: Standard deviation, before anything is seen, of what an acceleration of 1 g adds: dps, by the
 #: data sheets of MEMS gyroscopes. At rest it varies little, and follows what else it likes.
 _PER_G = 0.1
+#: By how much squares of acceleration are shrunk, of their own whitened squares: at rest their sum
+#: is gravity's, a constant, and beside acceleration nothing but noise tells its coefficient.
+_SUM_OF_SQUARES = 1e-3
 
 #: Further nuisances: blocks of each session, or these prepared.
 Events = list[list[np.ndarray]]
@@ -152,6 +155,8 @@ class Regression:
     def _shrink(self, products: np.ndarray, terms: Terms) -> None:
         """Shrink terms that are the first of (S, ..., J, J), each session's share of it alike."""
         for i, term in enumerate(terms):
+            if is_of_force(term) and term.power == 2:
+                products[..., i, i] *= 1.0 + _SUM_OF_SQUARES
             known = self._precision.get(term, self._of_data_sheets * is_of_force(term))
             products[..., i, i] += known / len(self.sessions)
 
