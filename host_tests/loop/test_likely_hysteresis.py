@@ -61,7 +61,7 @@ def test_a_hysteresis_of_a_pair_is_likelier_than_what_is_simpler(
         decision = found.decision
         assert (found.candidate, found.rivals) == (LOOP, pytest.approx(rivals))
         assert (decision.accepted, decision.ratio, decision.inflation) == (True, 2 * nats, 1.0)
-        assert decision.p_value == pytest.approx(np.exp(-nats))
+        assert decision.p_value == pytest.approx(2 * np.exp(-nats))
         assert len(decision.session_gains) == 0
         assert asked == [[D, TEMP], [D, TEMP, A], [D, TEMP, B]]
 

@@ -29,6 +29,8 @@ LIKE_IT = (KIND, "temperature-peak", "thermal-lag", "thermal-rate", "power-on-tr
 MEMORIES = ("thermal-lag", "thermal-rate", "power-on-transient")
 #: Radii of the narrowest and the widest play operator, as shares of the range of temperature.
 _RADII = 0.03, 0.5
+#: Powers of an even loop, and of a lopsided one.
+_FORMS = (1,), (1, 2)
 #: What is simpler.
 SIMPLER = ("thermal-lag", "thermal-rate", "temperature-kink")
 #: Why it was refused: both stand in the report.
@@ -65,15 +67,17 @@ def is_like_hysteresis(
     return most >= float(by_line(straight, beside, best.terms).sum())
 
 
-def play_operators(sessions: Sequence[Session]) -> tuple[Term, ...]:
-    """Those of all widths, with squares, over the temperatures of some sessions."""
+def play_operators(
+    sessions: Sequence[Session], powers: Sequence[int] = _FORMS[-1]
+) -> tuple[Term, ...]:
+    """Those of all widths, by default with squares, over the temperatures of some sessions."""
     degc = [s.source("temp") for s in sessions]
     lo, hi = float(min(d.min() for d in degc)), float(max(d.max() for d in degc))
     centre = float(np.mean([d.mean() for d in degc]))
     return tuple(
         Term("temp", lo, hi, centre, power, memory="play", width=2.0 * (hi - lo) * float(radius))
         for radius in np.geomspace(*_RADII, MOST_PLAYS)
-        for power in (1, 2)
+        for power in powers
     )
 
 
@@ -83,8 +87,8 @@ def likeliest(regression: Regression, terms: Terms) -> tuple[Candidate | None, f
     """
     if not may_show(regression.sessions):
         return None, 0.0
-    operators = play_operators(regression.sessions)
-    nats = evidence(regression, terms, operators)
+    forms = [play_operators(regression.sessions, powers) for powers in _FORMS]
+    nats, operators = max(((evidence(regression, terms, f), f) for f in forms), key=itemgetter(0))
     return (Candidate(KIND, operators, "catalogue") if nats > 0 else None), nats
 
 
@@ -107,8 +111,8 @@ def of_a_pair(
         return None, AS_WELL if most < nats + NATS else BETTER
     if nats < NATS:
         return None, "not significant"
-    # the chance that noise makes it so likely is less (Markov's inequality)
-    p = min(1.0, float(np.exp(-nats)))
+    # the chance that noise makes one of the forms so likely is less (Markov's inequality)
+    p = min(1.0, len(_FORMS) * float(np.exp(-nats)))
     return Found(candidate, Decision(True, p, 2 * nats), {rival: most - nats}), ""
 
 
