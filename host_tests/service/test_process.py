@@ -71,6 +71,7 @@ def test_what_it_cannot_run_with_is_one_line_and_stays_as_it_is(tmp_path, words,
     line, complaint = first_line(tmp_path, *options, bus=bus)
     assert line is None and re.match(said, complaint) and complaint.count("\n") == 1
     assert (tmp_path / "mine.csv").read_text() == "t_us,gx,gy,gz\n0,1,2,3\n"
+    assert not (tmp_path / "learned.bin").exists()
 
 
 LIVE = """

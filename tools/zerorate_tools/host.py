@@ -4,11 +4,13 @@ The kernels stay integers: readings are rounded to an LSB that the full scale gi
 which they know to 1/256 of one, is taken off the reading as it came.
 """
 
+import atexit
 from array import array
 from collections.abc import Sequence
+from contextlib import suppress
 from math import isfinite, pi
-from os import PathLike, fspath
-from os.path import exists, isfile, realpath
+from os import PathLike, fspath, remove
+from os.path import exists, getsize, isfile, realpath
 from typing import IO
 
 from zerorate import Corrector, Sensor
@@ -135,7 +137,7 @@ def store_file(path: str | PathLike[str]) -> FileStorage:
 
 def _locked(path: str | PathLike[str]) -> IO[bytes] | None:
     """The file, locked; None where it cannot be written, which is said when it is to be, and where
-    there are no locks. Raises InFile."""
+    there are no locks. It is gone at exit if nothing was written to it. Raises InFile."""
     try:
         import fcntl
 
@@ -146,7 +148,14 @@ def _locked(path: str | PathLike[str]) -> IO[bytes] | None:
         raise InFile(path, problem, do=do) from error
     except (ImportError, OSError):
         return None
+    atexit.register(_remove_if_empty, realpath(path))
     return file
+
+
+def _remove_if_empty(path: str) -> None:
+    with suppress(OSError):
+        if getsize(path) == 0:
+            remove(path)
 
 
 def _loaded(
