@@ -125,7 +125,7 @@ def test_a_full_disk_is_one_line_and_what_was_done_is_kept(data, tmp_path, monke
     assert len(list((tmp_path / "out").rglob("*"))) == len(["parts", "one of three"])
     assert main(words) == 0
     said = capsys.readouterr().out
-    assert "3 devices" in said and "1 of these devices were done" in said
+    assert "3 devices" in said and "had done 1 device of these" in said
 
 
 @pytest.fixture

@@ -39,7 +39,7 @@ LISTS = pd.DataFrame({"t_s": np.arange(300) / 100, "pulse": 70, "gyro": "[0.8, -
         ("a,b\n1,2", {}, "no column for gx, gy, gz; map it: --map gx=COLUMN"),
         ("gx_dps,gy_dps,gz_dps\n1,2,3", {}, "no time stamps; give --hz"),
         (f"{HEAD}\n1,2,3,4", {}, "time stands still"),
-        (f"{HEAD},temp_c\n1,0,0,0,0", {}, "no sample is left; 1 rows: all readings"),
+        (f"{HEAD},temp_c\n1,0,0,0,0", {}, "no sample is left; 1 row: all readings"),
         (f"{HEAD}\n1,1,1,1", {"mapping": "load=weight"}, "no column 'weight'; choose of t_s, gx_d"),
         (f"{HEAD},load\n0,1,1,1,1\n1,1,1,1,3e9", {"mapping": "load=load"},
          r"row 2: load is 3e\+09, no integer of 32 bits; scale it down"),

@@ -94,8 +94,8 @@ def test_rows_that_are_no_samples_are_dropped_and_counted(tmp_path):
     assert report.dropped == {
         "all readings are zero": 1, "a reading is no number": 2, "the time stamp is no number": 2
     }  # fmt: skip
-    assert told(report, "time goes back at 1 rows: sorted by time")
-    assert told(report, "gy: 1 readings at the end of the 16-bit range (clipped)")
+    assert told(report, "time goes back at 1 row: sorted by time")
+    assert told(report, "gy: 1 reading at the end of the 16-bit range (clipped)")
     # three zero rates alone may be a sample
     assert len(read(tmp_path, f"{HEAD}\n0,1,0,0\n1,0,0,0")[0]) == 2
 

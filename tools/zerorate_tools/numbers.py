@@ -32,6 +32,11 @@ def fixed(value: float, digits: int, sign: str = "") -> str:
     return f"{round(float(value), digits) + 0.0:{sign}.{digits}f}"
 
 
+def counted(count: int, what: str) -> str:
+    """1 device, 2 devices."""
+    return f"{count} {what}{'' if count == 1 else 's'}"
+
+
 def duration(seconds: float) -> str:
     """As a person would say it: 250 ms, 4.2 s, 15 min, 2.5 h."""
     if seconds < 1:

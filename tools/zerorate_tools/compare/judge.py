@@ -19,6 +19,7 @@ from ..loop.motion.moving import moving_of
 from ..loop.read.gate import CannotClose
 from ..loop.read.still import runs, still_ticks, ticks_with_spread
 from ..loop.read.ticks import Ticks
+from ..numbers import counted
 from ..peers import Given, firmware, fusion, given, vqf_default
 from ..recordings import read_recording
 
@@ -178,7 +179,7 @@ class Compared:
         how = f"{times:.1f} times {verdict.word}" if times > 1 else f"in deg/s {verdict.word}"
         than = f"{how} than the mean of the first rest"
         words = than if verdict.word in ("better", "worse") else verdict.word
-        rests = f"{len(self.rests)} later rest" + ("s" if len(self.rests) > 1 else "")
+        rests = counted(len(self.rests), "later rest")
         mine, theirs = map(self.heading_deg_per_min, (self.ours, FIRST_REST))
         return (
             f"{self.ours}: {words}. At {rests} it would have lost "

@@ -10,6 +10,7 @@ import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
+from ..numbers import counted
 from .part import Part, alone, removed_mdps, scale_of
 from .population import TERMS, UNITS, Curve
 from .prior import SCENARIOS, WAYS
@@ -107,11 +108,11 @@ def scenario_in_words(name: str) -> str:
 def _lines(fleet: Fleet) -> Iterator[str]:
     report = fleet.report
     yield (
-        f"{report['devices']} devices, {report['sessions']} power-ons, "
+        f"{counted(report['devices'], 'device')}, {counted(report['sessions'], 'power-on')}, "
         f"{report['hours']:.1f} hours, {report['samples']:,} samples"
     )
     if fleet.resumed:
-        yield f"{fleet.resumed} of these devices were done by an earlier run"
+        yield f"an earlier run had done {counted(fleet.resumed, 'device')} of these"
     for effect in report["effects"]:
         yield from _effect(effect, report["reference_degc"])
     for step in report["steps"]:

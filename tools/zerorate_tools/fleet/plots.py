@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from ..numbers import figure
+from ..numbers import counted, figure
 from ..recordings.atomic import written_beside
 from ..report.page import rendered
 from ..report.plot import Panel, Plot, Series
@@ -148,7 +148,7 @@ def headline(report: dict[str, Any]) -> str:
     tried = (report["prior"] or {}).get("benefit") or {"scenarios": {}}
     found = tried["scenarios"].get("at-rest-for-10-s")
     if not found:
-        return f"{report['devices']} devices, {report['sessions']} power-ons"
+        return f"{counted(report['devices'], 'device')}, {counted(report['sessions'], 'power-on')}"
     before, after = (figure(found[way]["median_mdps"]) for way in ("without", "prior"))
     return (
         f"A device that starts from {report['devices_of_the_part']} others is off by {after} "

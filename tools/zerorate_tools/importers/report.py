@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from os import PathLike
 from pathlib import Path
 
-from ..numbers import duration
+from ..numbers import counted, duration
 
 
 @dataclass
@@ -56,9 +56,11 @@ class Report:
             f"of {self.rows_read} rows"
         ]
         out += self.doubts
-        out += [f"dropped {count} rows: {reason}" for reason, count in self.dropped.items()]
         out += [
-            f"{name}: {count} readings at the end of the 16-bit range (clipped)"
+            f"dropped {counted(count, 'row')}: {reason}" for reason, count in self.dropped.items()
+        ]
+        out += [
+            f"{name}: {counted(count, 'reading')} at the end of the 16-bit range (clipped)"
             for name, count in self.clipped.items()
         ]
         return out + self.notes

@@ -5,7 +5,7 @@ from typing import Any
 
 from ..loop.motion.by_windows import GIVEN
 from ..model import effects
-from ..numbers import figure
+from ..numbers import counted, figure
 
 #: What is found without a row: kind -> what a person calls it, and what it says of the device.
 _FOUND_OTHERWISE = {
@@ -215,7 +215,7 @@ def found_in_short(result: Report) -> str:
     names = [f"{title(s['effect'], s['sources'])} ({s['confidence']})" for s in result["effects"]]
     if not names:
         return "No effect was found beyond the line over temperature that the firmware learns."
-    return f"{len(names)} effect{'s' if len(names) > 1 else ''} found: {'; '.join(names)}."
+    return f"{counted(len(names), 'effect')} found: {'; '.join(names)}."
 
 
 def capital(text: str) -> str:

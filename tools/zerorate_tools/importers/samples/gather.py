@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from ...errors import BadRecording
+from ...numbers import counted
 from ...recordings.recording import ACCEL, GYRO, TEMP, Columns
 from ..columns.guesses import unit_words
 from ..columns.plan import Plan, hz_words
@@ -111,7 +112,7 @@ class _Gathering:
                 self._take(self.plan.physical(chunk), chunk.place)
             self.spool.finish()
             self._check()
-            counted = self.counts.notes(self.path)
+            of_counts = self.counts.notes(self.path)
             self._refuse_turns(self.unfiltered)
             self.spool = in_order(self.spool, self.path)
             self._leave_lines_out()
@@ -120,10 +121,10 @@ class _Gathering:
         except BaseException:
             self.spool.close()
             raise
-        notes = [*self.table.notes, *self.plan.notes, *self.clock.notes, *counted]
+        notes = [*self.table.notes, *self.plan.notes, *self.clock.notes, *of_counts]
         back = self.runs.steps_back
         if back:
-            notes.append(f"time goes back at {back} rows: sorted by time")
+            notes.append(f"time goes back at {counted(back, 'row')}: sorted by time")
         interval_us, repeated = self._interval_us()
         looked_at = {
             n: np.concatenate([k[n] for k in self.kept]) for n in (TIME, *self.readings)
@@ -270,7 +271,7 @@ class _Gathering:
             dropped = self.table.dropped + self.dropped
             if not dropped and not self.rows:
                 raise BadRecording(self.path, "no data row", do="name another file")
-            why = [f"{count} rows: {why}" for why, count in dropped.items()]
+            why = [f"{counted(count, 'row')}: {why}" for why, count in dropped.items()]
             do = "write each of three rates as a number in a cell of its own"
             raise BadRecording(self.path, "no sample is left", do="; ".join([*why, do]))
         self.runs.refuse_a_restart(self.path)
