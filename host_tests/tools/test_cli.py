@@ -15,7 +15,7 @@ from zerorate_tools import cli, installed, runtimes
 from zerorate_tools.cli import main
 from zerorate_tools.commands.demo import get_ready
 from zerorate_tools.errors import MissingRuntime
-from zerorate_tools.installed import adding
+from zerorate_tools.installed import adding, beside
 from zerorate_tools.recordings import Scales, recording_writer
 from zerorate_tools.simulate import simulate_to_files
 
@@ -139,15 +139,19 @@ def test_an_extra_is_added_from_where_the_package_came(monkeypatch, record, comm
 
 
 @pytest.mark.parametrize(
-    ("left", "command"),
-    [("pipx_metadata.json", "pipx install --force"), ("uv-receipt.toml", "uv tool install")],
+    ("left", "command", "inject"),
+    [
+        ("pipx_metadata.json", "pipx install --force", "pipx inject zerorate"),
+        ("uv-receipt.toml", "uv tool install", f"uv pip install --python '{sys.prefix}'"),
+    ],
 )
-def test_an_installer_of_commands_adds_an_extra_to_its_own(monkeypatch, tmp_path, left, command):
+def test_an_installer_of_commands_adds_to_its_own(monkeypatch, tmp_path, left, command, inject):
     (tmp_path / left).touch()
     monkeypatch.setattr(sys, "prefix", str(tmp_path))
     monkeypatch.setattr(installed, "_source", lambda: ("a.whl", False))
     assert adding("linux") == f"{command} 'a.whl[tools,linux]'"
     assert adding("tools") == f"{command} 'a.whl[tools]'"
+    assert beside("vqf") == f"{inject} vqf"
 
 
 def test_the_public_names_are_there_and_nothing_else_is():

@@ -1,4 +1,4 @@
-"""How this package came here, and the command that adds one of its extras."""
+"""How this package came here, and the commands that add to it."""
 
 import json
 import sys
@@ -7,8 +7,12 @@ from pathlib import Path
 from urllib.parse import urlparse
 from urllib.request import url2pathname
 
-#: A file that an installer of commands leaves in the environment that it makes -> its command.
-_INSTALLERS = {"pipx_metadata.json": "pipx install --force", "uv-receipt.toml": "uv tool install"}
+#: A file that an installer of commands leaves in the environment that it makes -> its commands:
+#: one installs this package again, one another package beside it. pip is not in such a one.
+_INSTALLERS = {
+    "pipx_metadata.json": ("pipx install --force", "pipx inject zerorate"),
+    "uv-receipt.toml": ("uv tool install", f"uv pip install --python '{sys.prefix}'"),
+}
 
 
 def adding(extra: str) -> str:
@@ -17,11 +21,21 @@ def adding(extra: str) -> str:
     It names the wheel or checkout that it was installed from: an index may not have it.
     """
     came_from, editable = _source()
-    for left, command in _INSTALLERS.items():
-        if (Path(sys.prefix) / left).exists():  # such an environment has no pip of its own
-            extras = extra if extra == "tools" else f"tools,{extra}"
-            return f"{command} '{came_from}[{extras}]'"
+    if commands := _commands():
+        extras = extra if extra == "tools" else f"tools,{extra}"
+        return f"{commands[0]} '{came_from}[{extras}]'"
     return f"pip install {'-e ' if editable else ''}'{came_from}[{extra}]'"
+
+
+def beside(package: str) -> str:
+    """Return the command that installs another package into the environment of this one."""
+    commands = _commands()
+    return f"{commands[1] if commands else 'pip install'} {package}"
+
+
+def _commands() -> tuple[str, str] | None:
+    here = Path(sys.prefix)
+    return next((both for left, both in _INSTALLERS.items() if (here / left).exists()), None)
 
 
 def _source() -> tuple[str, bool]:

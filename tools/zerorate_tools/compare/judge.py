@@ -14,6 +14,7 @@ from scipy.stats import norm, t
 from threadpoolctl import threadpool_limits
 
 from ..errors import BadRecording, InFile
+from ..installed import beside
 from ..loop.motion.by_windows import GRAVITY, UNIT, by_windows, seen_in_words
 from ..loop.motion.moving import moving_of
 from ..loop.read.gate import CannotClose
@@ -227,7 +228,7 @@ def compare(
     left_out = {}
     for name, peer in _OPTIONAL.items():
         if find_spec(name) is None:
-            left_out[name] = f"not installed: pip install {name}"
+            left_out[name] = f"not installed: {beside(name)}"
             continue
         errors[name] = _errors([peer([one])[0] for one in sessions], sessions, later)
         advance(1)

