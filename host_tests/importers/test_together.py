@@ -11,7 +11,13 @@ from zerorate_bench.foreign_logs import CORPUS
 from zerorate_bench.public_data import recordings, told_of
 from zerorate_tools.cli import main
 from zerorate_tools.errors import BadRecording, InFile
-from zerorate_tools.importers import cut, import_recording, import_together, read_foreign
+from zerorate_tools.importers import (
+    Options,
+    cut,
+    import_recording,
+    import_together,
+    read_foreign,
+)
 from zerorate_tools.importers.logs import apart
 from zerorate_tools.recordings import (
     Scales,
@@ -189,6 +195,23 @@ def test_files_of_sensors_that_share_no_time_are_refused(tmp_path, sensors):
     sensors[1].write_text(sensors[1].read_text().replace("time_s", "elapsed"))
     with pytest.raises(BadRecording, match="the tables gyro, my acc share no time"):
         import_recording(sensors, tmp_path / "o.csv")
+
+
+def test_files_without_times_are_put_together_row_by_row(tmp_path, sensors):
+    how = {"options": Options(hz=100.0), "units": {"gyro": "dps", "accel": "m/s2"}}
+    for file in sensors:
+        lines = [line.split(",", 1)[1] for line in file.read_text().splitlines(keepends=True)]
+        file.write_text("".join(lines))
+    sensors[1].write_text("".join([*lines[:200], "torn\n", *lines[201:]]))
+    report = import_recording(sensors, tmp_path / "o.csv", **how)
+    assert sum(report.dropped.values()) == 1
+    accel_g = read_recording(tmp_path / "o.csv").accel_g()
+    at_s = np.arange(500) / 100 + 0.003
+    assert len(accel_g) == 500
+    np.testing.assert_allclose(accel_g[:, 0], np.sin(at_s) / 9.80665, atol=0.001)
+    sensors[1].write_text("".join(lines[:-1]))
+    with pytest.raises(BadRecording, match="do not begin and end together"):
+        import_recording(sensors, tmp_path / "o.csv", **how)
 
 
 _PAGE = Path(__file__).parents[2] / "docs" / "import-figures.md"

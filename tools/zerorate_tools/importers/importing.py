@@ -209,7 +209,7 @@ def _gathered(table: Table, path: Path, how: _How, folder: Path | None) -> _Sour
     fast_dps = np.inf if raw or options.gyro_lsb_per_dps else FASTEST_DPS
     found = gathered(table, plan, path, hz=options.hz, fast_dps=fast_dps, folder=folder)
     if table.parts > 1:
-        refuse_two_recordings(found.spool, path)
+        refuse_two_recordings(found.spool, path, found.counted)
     return _Source(path, table, plan, found, options)
 
 

@@ -18,18 +18,19 @@ _LOOKED_AT, _USUAL = 1000, 0.9
 _TOGETHER_US, _TOGETHER = 5e6, 0.02
 
 
-def refuse_two_recordings(spool: Spool, path: Path) -> None:
+def refuse_two_recordings(spool: Spool, path: Path, counted: bool) -> None:
     """Raise BadRecording where the files of a folder hold rates and forces of other times: those of
-    one recording begin and end together."""
+    one recording begin and end together. counted: rows are the times, so there are as many."""
     rates, force = spool.span_us("gx"), spool.span_us("ax")
     if rates is None or force is None:
         return
-    within = max(_TOGETHER_US, _TOGETHER * (rates[1] - rates[0]))
+    within = 0.0 if counted else max(_TOGETHER_US, _TOGETHER * (rates[1] - rates[0]))
     if max(abs(one - other) for one, other in zip(rates, force)) > within:
         problem = (
             "its rates and its acceleration do not begin and end together, as in one recording"
         )
-        raise BadRecording(path, problem, do="import the file of the gyroscope alone")
+        other = "leave out --hz if they have times; else " if counted else ""
+        raise BadRecording(path, problem, do=f"{other}import the file of the gyroscope alone")
 
 
 class Bridged:

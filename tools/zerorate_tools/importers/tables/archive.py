@@ -141,8 +141,8 @@ def _by_shared_time(tables: dict[str, Table], path: Path) -> Table:
         raise BadRecording(path, problem, do=do)
     times = Counter(name for t in tables.values() for name in usual.time_columns(t.names))
     shared = [name for name, count in times.items() if count == len(tables)]
-    if not shared:
-        do = "write them into one table: if they have the same rows, paste -d, FILE FILE > BOTH.csv"
+    if times and not shared:
+        do = "name their times alike; or, if each row is one sample, take the times out: --hz N"
         raise BadRecording(path, f"the tables {', '.join(tables)} share no time", do=do)
     return _together(tables, shared)
 
@@ -163,6 +163,7 @@ def _is_of_sensors(table: Table, file: Path) -> bool:
 
 
 def _together(tables: dict[str, Table], shared: list[str]) -> Table:
+    """shared: columns of times; where there are none, rows of one number are of one time."""
     own = {
         (stem, name): name if _holds(name, stem) else f"{stem} {name}"
         for stem, table in tables.items()
@@ -170,24 +171,22 @@ def _together(tables: dict[str, Table], shared: list[str]) -> Table:
         if name not in shared
     }
 
-    def of_one(stem: str, table: Table, wanted: list[str]) -> Iterator[dict[str, np.ndarray]]:
+    def of_one(stem: str, table: Table, wanted: list[str]) -> Iterator[Chunk]:
         ours = {n: own[stem, n] for n in table.names if own.get((stem, n)) in wanted}
         times = [n for n in wanted if n in shared]
-        for chunk in table.chunks([*times, *ours]) if ours or times == wanted else ():
-            out = dict.fromkeys(wanted, np.full(len(chunk.place), np.nan))
-            out |= {n: chunk.columns[n] for n in times}
-            yield out | {said: chunk.columns[n] for n, said in ours.items()}
-        both.dropped.update(table.dropped)
-        table.dropped.clear()
+        with table.looked_at() as read:
+            for chunk in read([*times, *ours]) if ours or times == wanted else ():
+                out = dict.fromkeys(wanted, np.full(len(chunk.place), np.nan))
+                out |= {n: chunk.columns[n] for n in times}
+                yield Chunk(chunk.place, out | {said: chunk.columns[n] for n, said in ours.items()})
+            both.dropped.update(table.dropped)
 
     def chunks(wanted: list[str]) -> Iterator[Chunk]:
-        place = 0
         turns = [of_one(stem, table, wanted) for stem, table in tables.items()]
         for some in zip_longest(*turns):
-            columns = {n: np.concatenate([one[n] for one in some if one]) for n in wanted}
-            size = len(next(iter(columns.values())))
-            yield Chunk(np.arange(place, place + size), columns)
-            place += size
+            of = [one for one in some if one]
+            columns = {n: np.concatenate([one.columns[n] for one in of]) for n in wanted}
+            yield Chunk(np.concatenate([one.place for one in of]), columns)
 
     calendar = frozenset(
         own.get((stem, name), name) for stem, table in tables.items() for name in table.calendar
