@@ -269,6 +269,14 @@ def test_an_attitude_is_offered_with_words_that_keep_its_digits(tmp_path, names)
         assert recording.columns[name] == pytest.approx(1e6 * part, abs=0.51)
 
 
+def test_a_counter_that_jumps_is_offered_as_the_time(tmp_path):
+    frame = table(500).drop(columns="t_s").assign(seq=np.arange(500)).drop(range(100, 150))
+    _, report = read(tmp_path, frame, options=COUNTED)
+    (doubt,) = report.doubts
+    assert "'seq' skips 50 samples: give --map t_us=seq:x10000 and not --hz" in doubt
+    assert not read(tmp_path, frame[:100], options=COUNTED)[1].doubts
+
+
 CLOCK = [f"12:00:{t:06.3f}" for t in table(500)["t_s"]]
 RARE = pd.Timestamp("2021-03-05T23:50") + pd.to_timedelta(np.arange(500) * 15, unit="s")
 SINCE_NS = 1_777_636_800_990_000_000 + np.arange(500) * 10_000_000

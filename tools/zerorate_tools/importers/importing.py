@@ -224,7 +224,7 @@ def _converted(source: _Source, common: Common) -> _Import:
     report = Report(found.rows, dropped=found.dropped, notes=found.notes)
     _leave_out_unread(found, plan, report)
     scales = fitting_scales(found, common, plan, table, source.options, path, report.notes)
-    report.doubts += doubts(found, plan, scales, path)
+    report.doubts += doubts(found, plan, table, scales, path)
     report.notes += [*absent(plan, table.names, path), *left_aside(plan, table)]
     names = [n for n in COLUMNS if n in found.spool.names]
     names += [n for n in plan.wanted if n not in COLUMNS]

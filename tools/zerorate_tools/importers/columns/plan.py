@@ -352,16 +352,16 @@ def hz_words(table: Table) -> str:
             words = map_words(TIME, name, likely_time(values))
             if (steps % 1).any() and not of_long_time(name):
                 return words
-            # whole numbers may count anything
-            maybe = maybe or (f", or {words} if it is a time" if usual.is_clock(name) else "")
+            if not maybe and usual.is_clock(name):  # whole numbers may count anything
+                maybe = f", or {words} if it is a time"
     return f"--hz, samples a second{maybe}"
 
 
 def left_aside(plan: Plan, table: Table) -> list[str]:
-    """Which named columns a recording goes without, any of which may hold a cause."""
+    """Which columns a recording goes without, any of which may hold a cause."""
     aside = [n for n in table.names if n and n not in plan.columns]
     aside = [n for n in aside if n not in usual.time_columns(table.names)]
-    if plan.by_format or usual.unnamed(table.names) or not aside:
+    if not aside:
         return []
     for parts in usual.attitudes(aside):
         first = table.first_rows(list(parts.values()))

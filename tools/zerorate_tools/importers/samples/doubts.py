@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from ...errors import BadRecording
-from ...numbers import duration
+from ...numbers import counted, duration
 from ...recordings import Scales
 from ...recordings.recording import ACCEL, COLUMNS, GYRO, TEMP, TIME, Columns
 from ...recordings.turning import (
@@ -30,6 +30,7 @@ from ..columns.guesses import (
 )
 from ..columns.mapping import map_words
 from ..columns.plan import Plan
+from ..tables.table import Table
 from .gather import Gathered
 
 _GRAVITY_WITHIN = 0.2
@@ -52,11 +53,13 @@ _UNSHAKEN_G = 0.02
 _STILL = 3.0
 #: A damaged line was a sample, and took its time; so many are lines of another kind.
 _LOST = 0.05
+#: So much of a column goes on by one a row if it counts them.
+_COUNTS = 0.5
 #: A tenth of what a channel does may be lost by rounding.
 _MOST_ROUNDED = 0.1
 
 
-def doubts(found: Gathered, plan: Plan, scales: Scales, path: Path) -> list[str]:
+def doubts(found: Gathered, plan: Plan, table: Table, scales: Scales, path: Path) -> list[str]:
     """Sentences, of which each names what to do. Raises BadRecording for what cannot be true."""
     _refuse_gravity(found.looked_at, plan, scales, path)
     _refuse_pace(found, plan, path)
@@ -74,7 +77,26 @@ def doubts(found: Gathered, plan: Plan, scales: Scales, path: Path) -> list[str]
             f"{lost} of {found.rows} rows are dropped, and --hz counts them as time: "
             "take out of the file what are no samples"
         )
+    if found.counted:
+        out += _of_counters(table, plan, found.interval_us)
     return [f"doubtful: {words}" for words in out]
+
+
+def _of_counters(table: Table, plan: Plan, interval_us: float) -> list[str]:
+    """A column that counts the rows and, among the first ones, jumps: --hz does not count what was
+    lost there."""
+    aside = [name for name in table.names if name and name not in plan.columns]
+    if not aside:
+        return []
+    with table.looked_at() as chunks:
+        first = next(iter(chunks(aside)))
+    for name, values in first.columns.items():
+        ahead = np.diff(values - first.place)
+        lost = int(ahead[ahead > 0].sum())
+        if lost and np.sum(ahead == 0) > _COUNTS * len(ahead):
+            do = map_words(TIME, name, f"x{interval_us:.9g}")
+            return [f"{name!r} skips {counted(lost, 'sample')}: give {do} and not --hz"]
+    return []
 
 
 def of_time(temp_degc: np.ndarray, span_us: float, counted: bool) -> list[str]:
