@@ -10,10 +10,11 @@ from zerorate_tools.closing import close, load
 from zerorate_tools.loop.analyse import analyse
 from zerorate_tools.loop.fit.line import less_slope
 from zerorate_tools.loop.fit.single import PiecesByLine
+from zerorate_tools.loop.search.catalogue import candidates
 from zerorate_tools.loop.search.curve import ByPieces, powers, smooth_curve
 from zerorate_tools.loop.search.examine import cancels
 from zerorate_tools.loop.search.hysteresis import is_like_hysteresis
-from zerorate_tools.loop.search.select import Search, select
+from zerorate_tools.loop.search.select import Search, select, straight_line
 from zerorate_tools.loop.verify.run_kernels import run_and_prune
 from zerorate_tools.recordings import Recording, Scales, read_recording, write_recording
 
@@ -39,59 +40,20 @@ def warm_up(folder, seed, bend_dps, odr_hz=1.0, hours=1.0):
     return path
 
 
-def closed(path, folder):
-    """(kinds found, kernels' RMS before and after) of one recording alone."""
-    analysis = load([path])
-    analysis, _ = run_and_prune(analysis, [path], folder / "corrected.parquet")
-    judgement = analysis.judgement
-    kinds = [f.candidate.kind for f in analysis.selection.found]
-    return kinds, judgement.before_rms, judgement.after_rms
-
-
-@pytest.mark.parametrize("seed", range(2))
-def test_a_cubic_over_few_rests_is_found_and_halves_the_error(seed, tmp_path):
-    path = warm_up(tmp_path, seed, lambda u: 0.15 * (u**3 - 0.6 * u), odr_hz=1 / 15)
-    kinds, before, after = closed(path, tmp_path)
-    assert kinds
-    assert after < 0.5 * before
-
-
-@pytest.mark.parametrize("seed", range(2))
-def test_a_bend_that_the_firmware_follows_by_itself_is_not_made_worse(seed, tmp_path):
-    _, before, after = closed(warm_up(tmp_path, seed, lambda u: 0.02 * u**2), tmp_path)
-    assert after <= WORSE * before
-
-
-@pytest.mark.parametrize("seed", range(2))
-def test_a_straight_line_is_left_to_the_firmware(seed, tmp_path):
-    kinds, before, after = closed(warm_up(tmp_path, seed, lambda u: 0.0 * u), tmp_path)
-    assert not kinds
-    assert after == before
-
-
-def test_a_curve_that_explains_all_but_white_noise_ends_the_search(tmp_path):
-    path = warm_up(tmp_path, 0, lambda u: 0.02 * u**2, odr_hz=4.0, hours=2.0)
-    kinds, before, after = closed(path, tmp_path)
-    assert len(kinds) <= 1
-    assert after <= before
-
-
-@pytest.fixture(scope="module")
-def bent():
-    session = simulate(3, [("temperature-quadratic", 20.0)], sessions=1, bare=True).sessions[0]
-    return Search([session], on_pieces=PiecesByLine(session))
+@pytest.mark.parametrize(
+    ("bend_dps", "odr_hz", "most"), [(0.02, 1.0, 1), (0.02, 4.0, 1), (0.0, 1.0, 0)]
+)
+def test_what_the_firmware_follows_by_itself_is_not_made_worse(tmp_path, bend_dps, odr_hz, most):
+    path = warm_up(tmp_path, 0, lambda u: bend_dps * u**2, odr_hz)
+    told, _ = run_and_prune(load([path]), [path], tmp_path / "corrected.parquet")
+    assert len(told.selection.found) <= most
+    assert told.judgement.after_rms <= (WORSE if most else 1.0) * told.judgement.before_rms
 
 
 def by_pieces(search):
     own = search.regression, search.line, search.pool, search.on_pieces
     (found,) = ByPieces(*own, taken=0).look([])
     return found
-
-
-def test_a_bend_that_pieces_show_is_a_smooth_curve_with_a_slope_of_its_own(bent):
-    best = by_pieces(bent)
-    assert best.candidate.kind == "temperature-curve" and best.decision.accepted
-    assert less_slope(bent.line, best.candidate.terms) == ()
 
 
 def test_a_kink_is_no_smooth_curve_and_is_followed_no_further_than_it_was_seen():
@@ -134,9 +96,10 @@ def test_whole_passes_tell_a_curve_over_temperature_from_a_walk_that_pieces_take
     assert (pieces.by_passes()(*asked).sum() > 0) == is_curve
 
 
-def test_every_row_is_test_and_by_a_model_that_has_not_seen_it(tmp_path):
+def test_a_cubic_over_few_rests_is_halved_by_models_that_have_not_seen_the_rows(tmp_path):
     path = warm_up(tmp_path, 0, lambda u: 0.15 * (u**3 - 0.6 * u), odr_hz=1 / 15)
     result = close([path], tmp_path / "out")
+    assert np.linalg.norm(result["after_mdps"]) < 0.5 * np.linalg.norm(result["before_mdps"])
     rows = pq.read_table(tmp_path / "out" / "corrected.parquet").to_pandas()
     assert set(rows["split"]) == {"test"} and len(rows) == 240
     left = (read_recording(path).columns["gx"] - rows["bias_after_gx"]).to_numpy() / 1.31
@@ -144,10 +107,9 @@ def test_every_row_is_test_and_by_a_model_that_has_not_seen_it(tmp_path):
     assert np.sqrt((blocks**2).mean()) == pytest.approx(result["after_mdps"][0], rel=1e-3)
 
 
-@pytest.mark.parametrize("seed", range(2))
 @pytest.mark.filterwarnings("error::RuntimeWarning")
-def test_rests_that_are_few_and_far_between_teach_no_bend(seed):
-    (session,) = simulate(seed, [("temperature-cubic", 20.0)], sessions=1, bare=True).sessions
+def test_rests_that_are_few_and_far_between_teach_no_bend():
+    (session,) = simulate(0, [("temperature-cubic", 20.0)], sessions=1, bare=True).sessions
     rests = np.arange(session.blocks) % 8 < 2
     session.rate_dps[~rests] = np.nan
     session.weight[~rests] = 0.0
@@ -177,24 +139,18 @@ def lagging():
     return Search([session])
 
 
-@pytest.fixture
-def wavy():
-    """A bias that goes up and down twice over the range of temperature."""
+def test_a_curve_follows_what_no_cubic_does():
+    """Up and down twice over the range of temperature."""
     (session,) = simulate(5, sessions=1, bare=True).sessions
     temp = session.block_mean(session.sources["temp"])
     share = (temp - temp.min()) / np.ptp(temp)
     wave = 0.02 * np.sin(4 * np.pi * share)
-    return Search([replace(session, rate_dps=session.rate_dps + wave[:, None])])
-
-
-def test_a_curve_follows_what_no_cubic_does(wavy):
-    session, line = wavy.regression.sessions[0], wavy.line
-    by_line = PiecesByLine(session)
+    session = replace(session, rate_dps=session.rate_dps + wave[:, None])
+    by_line, line, pool = PiecesByLine(session), straight_line([session]), candidates([session])
     (found,) = select([session], on_pieces=by_line).found
     assert found.candidate.kind == "temperature-curve"
-    left = [
-        np.nanstd(by_line.residual(line, t)) for t in (powers(wavy.pool), found.candidate.terms)
-    ]
+    assert less_slope(line, found.candidate.terms) == (), "it has a slope of its own"
+    left = [np.nanstd(by_line.residual(line, t)) for t in (powers(pool), found.candidate.terms)]
     assert left[1] < 0.7 * left[0]
 
 

@@ -8,12 +8,10 @@ from zerorate_bench.loop.trials import NOISES_DPS, RATES_HZ, share_used, shares_
 from zerorate_tools.loop.analyse import analyse
 from zerorate_tools.loop.motion.scales_and_timing import in_motion, slots_of
 from zerorate_tools.loop.read.blocks import session_of
-from zerorate_tools.loop.read.reference import Reference
 from zerorate_tools.loop.read.still import still_ticks
 from zerorate_tools.loop.read.ticks import read_ticks
 from zerorate_tools.loop.report.unexplained import not_excluded
 from zerorate_tools.recordings import Recording, Scales, write_recording
-from zerorate_tools.recordings.checks import GAP
 from zerorate_tools.simulate import simulate_sessions
 
 from .power_ons import turning, written
@@ -132,14 +130,19 @@ def sessions(folder, effect, motion, attitude, count=3):
     return made, logs
 
 
-def shown(folder, effect, attitude):
-    made, logs = sessions(folder, effect, HANDLED if attitude else TURNED, attitude)
+@pytest.fixture(scope="module")
+def faultless(tmp_path_factory):
+    """Those of a sensor without fault, by attitude."""
+    return sessions(tmp_path_factory.mktemp("faultless"), [], HANDLED, attitude=True)
+
+
+def shown(made, logs):
     return in_motion(made[:-1], made[-1:], logs)
 
 
 @pytest.mark.parametrize("attitude", [True, False], ids=["attitude", "gravity"])
-def test_nothing_is_found_in_the_motion_of_a_sensor_without_fault(tmp_path, attitude):
-    motion = shown(tmp_path, [], attitude)
+def test_nothing_is_found_in_the_motion_of_a_sensor_without_fault(tmp_path, faultless, attitude):
+    motion = shown(*faultless if attitude else sessions(tmp_path, [], TURNED, False))
     assert motion.rate_scale is not None and not motion.found and slots_of(motion) == []
 
 
@@ -152,7 +155,7 @@ def test_nothing_is_found_in_the_motion_of_a_sensor_without_fault(tmp_path, atti
     ids=["scale by attitude", "cross-axis by gravity"],
 )
 def test_scale_and_cross_axis_are_named_and_measured(tmp_path, effect, kind, matrix, attitude):
-    motion = shown(tmp_path, [effect], attitude)
+    motion = shown(*sessions(tmp_path, [effect], HANDLED if attitude else TURNED, attitude))
     assert motion.scales.kind == kind and motion.scales.confirmed
     assert motion.scales.after < 0.4 * motion.scales.before
     slots = slots_of(motion)
@@ -160,19 +163,11 @@ def test_scale_and_cross_axis_are_named_and_measured(tmp_path, effect, kind, mat
     assert np.column_stack([s.coefficient_dps for s in slots]) == pytest.approx(matrix, abs=0.002)
 
 
-def test_a_scale_that_turns_would_show_is_not_said_to_be_beyond_the_recordings(tmp_path):
-    made, logs = sessions(tmp_path, [], HANDLED, attitude=True, count=2)
-    assert "rate-scale" not in not_excluded(analyse(made, logs=logs))
+def test_a_scale_that_turns_would_show_is_not_said_to_be_beyond_the_recordings(faultless):
+    made, logs = faultless
+    assert "rate-scale" not in not_excluded(analyse(made[:2], logs=logs))
 
 
-def test_an_attitude_makes_no_rest_of_motion(tmp_path):
-    (with_it,), _ = sessions(tmp_path, [], HANDLED, True, count=1)
-    (without,), _ = sessions(tmp_path, [], HANDLED, False, count=1)
+def test_an_attitude_makes_no_rest_of_motion(tmp_path, faultless):
+    with_it, ((without, *_), _) = faultless[0][0], sessions(tmp_path, [], HANDLED, False, count=1)
     assert np.array_equal(with_it.available, without.available) and not with_it.moved.any()
-
-
-def test_an_attitude_without_a_value_was_not_seen():
-    reference = Reference(["t_us", "qw", "qx", "qy", "qz"], 131.0)
-    q = np.array([[1, 0, 0, 0], [GAP] * 4, [0, 0, 0, 0], [0, 1, 0, 0]])
-    seen = reference.quaternions(dict(zip(("qw", "qx", "qy", "qz"), q.T)))
-    assert np.isnan(seen).all(axis=1).tolist() == [False, True, True, False]
