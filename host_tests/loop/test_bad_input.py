@@ -24,12 +24,6 @@ def wander(seed, n=N):
     return np.cumsum(np.random.default_rng(seed + 50).normal(0, 3, n)).astype(np.int32)
 
 
-def test_a_channel_that_one_recording_lacks_is_set_aside_and_named(closing):
-    every = [at_rest(i) for i in range(4)]
-    every[0]["load"] = wander(0)
-    assert closing(every).gate.dropped == {"load": "not in s1, s2, s3"}
-
-
 def test_an_extra_channel_with_gaps_is_bridged(tmp_path):
     paths = []
     for i in range(4):
@@ -60,12 +54,6 @@ def test_a_sensor_that_reads_nothing_is_told_what_it_needs(closing, readings, se
         one["az"] = at_rest(1)["az"]
     with pytest.raises(CannotClose, match=sentence):
         closing([one])
-
-
-@pytest.mark.parametrize(("samples", "minutes"), [(300, r"1\.0"), (590, r"1\.9")])
-def test_what_is_there_is_too_short_and_never_said_to_be_what_is_needed(closing, samples, minutes):
-    with pytest.raises(CannotClose, match=f"s0: {minutes} minutes are too short; 2 minutes at"):
-        closing([at_rest(1, samples)])
 
 
 def test_beside_an_hour_a_short_one_is_told_why_it_needs_more_than_alone(closing):
@@ -107,18 +95,17 @@ def test_whole_numbers_with_gaps_that_a_table_made_floats_are_integers_with_gaps
     assert np.isfinite(held).all() and np.ptp(held) > 0
 
 
-@pytest.mark.parametrize("lacking", [("temp",), ("ax", "ay", "az"), ("temp", "ax", "ay", "az")])
+@pytest.mark.parametrize("lacking", [("temp",), ("temp", "ax", "ay", "az")])
 def test_without_temperature_or_acceleration_the_rest_is_still_looked_at(closing, lacking):
     every = [{k: v for k, v in at_rest(i).items() if k not in lacking} for i in range(4)]
     analysis = closing(every)
     assert invented(analysis) == [] and np.isfinite(analysis.judgement.after_dps).all()
 
 
-@pytest.mark.parametrize("name", ["count", "known", "vib count", "gyro0"])
-def test_a_channel_of_any_name_leaves_the_rates_alone(closing, name):
+def test_a_channel_of_any_name_leaves_the_rates_alone(closing):
     every = [at_rest(i) for i in range(3)]
     for one in every:
-        one[name] = np.arange(N) * 1000
+        one |= {n: np.arange(N) * 1000 for n in ("count", "known", "vib count", "gyro0")}
     analysis, plain = closing(every), closing([at_rest(i) for i in range(3)])
     rate, expected = (a.sessions[0].rate_dps for a in (analysis, plain))
     assert rate == pytest.approx(expected, nan_ok=True)
@@ -145,16 +132,3 @@ def test_rows_of_fifteen_seconds_lie_alike_in_every_power_on(closing):
     slow = [{**at_rest(i, 480), "t_us": 15_000_000 * np.arange(480)} for i in range(3)]
     sessions = closing(slow, *(replace(MPU, odr_hz=hz) for hz in (1 / 15, 0.0667, 0.066))).sessions
     assert len({(s.block_s, s.ticks_per_block) for s in sessions}) == 1
-
-
-def test_a_part_that_an_import_was_not_told_is_named_as_the_other_one_is(closing):
-    unknown = replace(MPU, sensor="unknown")
-    for scales in ((MPU, unknown), (unknown, MPU)):
-        with pytest.raises(CannotClose, match=f"import the other with --sensor {MPU.sensor}$"):
-            closing([at_rest(i) for i in range(2)], *scales)
-
-
-def test_scales_that_an_import_chose_are_told_how_to_agree(closing):
-    wider = replace(MPU, sensor="unknown", gyro_lsb_per_dps=65.5)
-    with pytest.raises(CannotClose, match="import both with --gyro-lsb-per-dps 65.5"):
-        closing([at_rest(0), at_rest(1)], replace(MPU, sensor="unknown"), wider)

@@ -146,7 +146,7 @@ def test_channels_that_show_nothing_of_their_own_are_left_out():
     sessions, report = [session(40, **there), session(40, **there, alone=two)], GateReport()
     usable_channels(sessions, report)
     gone = {"held", "twice", "lost", "uptime", "alone", "acc_y", "rate_x"}
-    assert set(report.dropped) == gone
+    assert set(report.dropped) == gone and report.dropped["alone"] == "not in run"
     for s in sessions:
         assert list(s.sources) == ["fan", "near", "other", "acc_x"]
 
