@@ -37,11 +37,15 @@ def same(one, other):
         assert not len(apart), f"{name} {apart[0]}: {a[apart[0]]} and {b[apart[0]]}"
 
 
-@modes
+# In every form on the quickest, and on all in the form that boards run.
+@pytest.mark.parametrize(
+    ("name", "mode"),
+    [*(("x86", mode) for mode in sorted(trace.MODES)), ("wasm", "default"), ("armhf", "default")],
+)
 def test_bytecode_gives_what_cpython_gives_and_allocates_nothing(
-    micropython, mode, trace_on, trace_on_host
+    find_runtime, name, mode, trace_on, trace_on_host
 ):
-    same(trace_on(micropython, mode), trace_on_host(mode))
+    same(trace_on(find_runtime(name), mode), trace_on_host(mode))
 
 
 def test_the_kernels_that_are_compiled_give_what_cpython_gives(trace_on_host):

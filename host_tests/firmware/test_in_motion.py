@@ -31,12 +31,17 @@ class Learner(motions.Fed):
         self.reasons.add(self.state[REASON])
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_a_device_that_never_rests_is_known_to_40_mdps_after_two_minutes(seed):
-    motion = motions.swinging(seed, 170)
-    errors = Learner().feed(motion).errors_mdps(motion.bias_dps, after_s=120)
-    assert len(errors) >= 5
-    assert np.sqrt((errors**2).mean()) < 40
+def test_a_device_that_never_rests_is_known_to_40_mdps_and_within_two_sigma():
+    """Two minutes after it began; nine times of ten at least, from the first window."""
+    inside = []
+    for seed in range(5):
+        motion = motions.swinging(seed, 150)
+        learner = Learner().feed(motion)
+        errors = learner.errors_mdps(motion.bias_dps, after_s=120)
+        assert len(errors) >= 3 and np.sqrt((errors**2).mean()) < 40
+        inside += [np.abs(b - motion.bias_dps) < 2 * s for _, b, s in learner.learned]
+    assert len(inside) > 50
+    assert np.mean(inside) >= 0.9
 
 
 def warming(seed, seconds, degc, dps_per_degc):
@@ -63,9 +68,8 @@ def test_a_bias_that_follows_the_temperature_is_followed_without_a_lag():
     assert with_slope.max() < 40 < without.max()
 
 
-@pytest.mark.parametrize("seed", [0, 1])
-def test_an_accelerometer_off_by_20_mg_hardly_passes_for_a_turning_part(seed):
-    motion = motions.wandering(seed, 180)
+def test_an_accelerometer_off_by_20_mg_hardly_passes_for_a_turning_part():
+    motion = motions.wandering(0, 180)
     motion.samples[:, :3] += np.array([328, -328, 328])
     errors = Learner().feed(motion).errors_mdps(motion.bias_dps, after_s=150)
     print("rms error of each axis", np.sqrt(np.mean(errors**2, axis=0)), "mdps")
@@ -78,23 +82,13 @@ def test_a_bias_of_eighteen_dps_is_learned():
     assert len(errors) and np.abs(errors).max() < 100
 
 
-def test_the_truth_lies_within_two_sigma_at_least_ninety_times_of_a_hundred():
-    inside = []
-    for seed in range(10, 16):
-        motion = motions.swinging(seed, 120)
-        learner = Learner().feed(motion)
-        inside += [np.abs(b - motion.bias_dps) < 2 * s for _, b, s in learner.learned]
-    assert len(inside) > 50
-    assert np.mean(inside) >= 0.9
-
-
 @pytest.mark.parametrize(
     "motion",
     [
-        motions.turning(100, 0.5, [0.0, 0.0, 1.0]),
-        motions.turning(100, 0.0, [1.0, 0.0, 0.0]),
-        motions.turning(100, 2.0, [0.0, 0.0, 1.0]),
-        motions.turning(100, 2.0, [0.3, 0.0, 1.0]),
+        motions.turning(60, 0.5, [0.0, 0.0, 1.0]),
+        motions.turning(60, 0.0, [1.0, 0.0, 0.0]),
+        motions.turning(60, 2.0, [0.0, 0.0, 1.0]),
+        motions.turning(60, 2.0, [0.3, 0.0, 1.0]),
     ],
     ids=["a turntable", "a rest", "a slow turn of a car", "a steady turn about a leaning axis"],
 )

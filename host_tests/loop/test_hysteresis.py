@@ -11,6 +11,7 @@ from zerorate_tools.loop.fit.regression import Regression, predicted
 from zerorate_tools.loop.fit.single import PiecesByLine
 from zerorate_tools.loop.read.sessions import Session
 from zerorate_tools.loop.search.catalogue import candidates
+from zerorate_tools.loop.search.curve import powers
 from zerorate_tools.loop.search.hysteresis import (
     KIND,
     may_show,
@@ -73,19 +74,23 @@ def test_a_chamber_s_loop_is_named_and_taken_away_on_pieces_left_out():
     assert len(build_model(slots, SCALES).slots) == len(slots)
 
 
+def asked_of(session):
+    """What the search asks a hysteresis of: fit, line, bend, pool, pieces, and slots taken."""
+    pool, line = candidates([session]), straight_line([session])
+    return Regression([session]), line, powers(pool), pool, PiecesByLine(session), 0
+
+
 def test_a_part_warmed_once_shows_no_hysteresis():
     session = recording(WARMED_ONCE)
     assert not may_show([session]) and may_show([recording(DOWN_UP_DOWN)])
-    regression, line = Regression([session]), straight_line([session])
-    asked = regression, line, (), candidates([session]), PiecesByLine(session), 0
+    asked = asked_of(session)
     assert of_one_recording(*asked) == (None, "") == of_a_pair(*asked[:4], 0)
 
 
 @pytest.mark.parametrize(("walk", "cubic_dps"), [(0.001, 0.0), (0.0004, 0.1)])
 def test_neither_noise_nor_a_bend_that_pieces_at_its_ends_are_far_out_on_is_one(walk, cubic_dps):
     session = recording(DOWN_UP_DOWN, hysteresis=0.0, walk=walk, cubic_dps=cubic_dps)
-    found = select([session], on_pieces=PiecesByLine(session)).found
-    assert KIND not in [f.candidate.kind for f in found]
+    assert of_one_recording(*asked_of(session))[0] is None
 
 
 @pytest.mark.parametrize("judged_again", [False, True])
