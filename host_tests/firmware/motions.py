@@ -121,10 +121,6 @@ def value_at(state, at):
     return float(np.ldexp(float(state[at]), state[at + 1]))
 
 
-def numbers(state, at, count):
-    return np.array([value_at(state, at + 2 * i) for i in range(count)])
-
-
 def put_all(state, at, values):
     for i, value in enumerate(values):
         stored(state, at + 2 * i, value)

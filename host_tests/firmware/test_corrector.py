@@ -7,7 +7,7 @@ from zerorate import Corrector, Sensor
 from zerorate.gravity.gravity_settings import gravity_settings
 from zerorate.motion.motion_settings import motion_settings
 from zerorate.settings import DEFAULTS
-from zerorate.storage.codes import EMPTY, LOADED, OTHER_BINDING, OUT_OF_RANGE, UNREADABLE
+from zerorate.storage.codes import LOADED, OUT_OF_RANGE, UNREADABLE
 from zerorate.storage.store import _PIECE, Store
 from zerorate_fakes.memory import FakeMemory
 from zerorate_tools.layout import AXIS, MOTION, STATE, axis_at
@@ -69,16 +69,6 @@ def test_after_a_power_cut_the_first_sample_is_corrected(learned):
     assert again.load(store_for(again, memory=store.storage)) == LOADED
     frame = rest(again, 1)
     assert [abs(frame[4 + i]) <= 7 for i in range(3)] == [True] * 3
-
-
-def test_a_store_that_is_empty_or_of_another_chip_leaves_a_clean_start(learned):
-    fresh = Corrector()
-    assert fresh.load(store_for(fresh)) == EMPTY
-    store = store_for(learned)
-    learned.save(store)
-    other = store_for(fresh, binding=b"\x70\0\0\0", memory=store.storage)
-    assert fresh.load(other) == OTHER_BINDING
-    assert list(fresh.state) == list(Corrector().state)
 
 
 def test_a_storage_that_reads_otherwise_while_a_state_is_filled_leaves_a_clean_start(learned):

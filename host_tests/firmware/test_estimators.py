@@ -131,6 +131,3 @@ def test_noise_at_a_boundary_of_two_degrees_does_not_thrash_the_cache(noise):
         axis.learn(STEP // 2 + n)  # on the boundary of degree 0 and degree 1
     assert len(axis.recent_first) == 3
     assert {20 * STEP, 40 * STEP} < set(axis.recent_first)
-
-
-# Which long-term estimator gives way

@@ -26,7 +26,7 @@ def turning(rate_dps, seconds=60, axis=0, seed=1):
 
 
 @pytest.mark.parametrize("axis", [0, 1])
-@pytest.mark.parametrize("rate_dps", [-3, -1, -0.5, -0.1, 0.1, 0.5, 1, 3])
+@pytest.mark.parametrize("rate_dps", [-3, -0.5, 0.1, 1])
 def test_a_slow_turn_about_a_level_axis_is_never_learned(rate_dps, axis):
     off_lsb = []  # of eight devices: gravity hides a chance segment of the slowest turns
     for device in range(8):
@@ -38,7 +38,7 @@ def test_a_slow_turn_about_a_level_axis_is_never_learned(rate_dps, axis):
 
 
 @pytest.mark.parametrize("axis", [0, 1])
-@pytest.mark.parametrize("rate_dps", [-3, -1, -0.5, -0.1, 0.1, 0.5, 1, 3])
+@pytest.mark.parametrize("rate_dps", [-3, -0.5, 0.1, 1])
 def test_a_slow_turn_from_power_on_is_learned_by_no_estimator(rate_dps, axis):
     corrector, _ = play(rest(0.01), **RESTS_ALONE)
     before = estimators(corrector)
