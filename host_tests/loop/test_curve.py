@@ -9,7 +9,7 @@ from zerorate_tools.loop.search import curve
 from zerorate_tools.model.term import Term
 
 from . import dense
-from .dense import A, B, C, D
+from .dense import A, B, C
 from .selections import candidate, found, warm
 
 TEMP = Term("temp", 10.0, 40.0, 25.0)
@@ -51,66 +51,6 @@ def test_a_curve_bends_in_every_slot_that_is_left_at_places_evenly_apart(taken, 
         assert (slope.lo, slope.hi, slope.knot) == (15.0, 35.0, None)
         at = 20.0 + 10.0 * np.arange(1, bends + 1) / (bends + 1)
         assert [t.knot + 25.0 for t in knots] == pytest.approx(at)
-
-
-def test_without_a_line_over_temperature_there_is_no_curve():
-    assert curve.smooth_curve([warm()], (), 0) == []
-    by = by_pieces([warm()])
-    assert by._curve([]) == [] == by._kink([])
-
-
-@pytest.mark.parametrize(
-    ("degc", "p", "accepted", "taken"),
-    [
-        *((10.0, 0.9e-3, True, True), (10.0, 1.1e-3, True, False), (10.0, 0.9e-3, False, False)),
-        *((0.1, 1.1e-3, True, True), (0.1, 1.0, True, True)),  # where it hardly varies, any
-    ],
-)
-def test_a_curve_is_likely_and_bends_in_the_slots_that_others_leave(
-    monkeypatch, degc, p, accepted, taken
-):
-    made, line, asked = [warm(temp=np.linspace(20.0, 20.0 + degc, 50))], (TEMP,), []
-    told = [found(accepted=accepted, p=p, gains=[g]) for g in (1.0, 2.0)]
-    smooth, kink = candidate(A, B, C), candidate(D)
-    monkeypatch.setattr(curve, "smooth_curve", lambda *of: asked.append(of) or [smooth])
-    monkeypatch.setattr(curve.ByPieces, "_kink", lambda self, beside: [kink])
-    judge = lambda self, c, *of: asked.append((c, *of)) or told[c is kink]  # noqa: E731
-    monkeypatch.setattr(curve.ByPieces, "_judged", judge)
-    assert by_pieces(made, line, taken=1)._curve([found(A, B)], 1) == (told[::-1] if taken else [])
-    own = (smooth, [A, B], (B, C), 1), (kink, [A, B], (D,), 1)
-    assert asked == [(made, line, 4), *own]
-
-
-@pytest.mark.parametrize(
-    ("curves", "memories", "kinds"),
-    [
-        ([], [], ["supply"]),
-        ([5.0], [], ["supply", curve.KIND]),
-        ([5.0], [7.0], ["supply", "thermal-lag", curve.KIND]),
-        ([], [7.0], ["supply", "thermal-lag"]),
-    ],
-)
-def test_what_gains_more_is_taken_first_and_the_curve_gets_the_slots_that_are_left(
-    monkeypatch, curves, memories, kinds
-):
-    asked = []
-
-    def way(kind, gains):
-        def look(self, some, kept=0):
-            asked.append((kind, [f.candidate.kind for f in some], kept))
-            return [found(A, kind=kind, gains=[gain]) for gain in gains]
-
-        return look
-
-    monkeypatch.setattr(curve.ByPieces, "_curve", way(curve.KIND, curves))
-    monkeypatch.setattr(curve.ByPieces, "_memory", way("thermal-lag", memories))
-    told = by_pieces([]).look([found(A, kind="supply")])
-    assert [f.candidate.kind for f in told] == kinds
-    assert asked[:2] == [(curve.KIND, ["supply"], 1), ("thermal-lag", ["supply"], 1)]
-    if memories:
-        assert asked[2] == (curve.KIND, ["supply", "thermal-lag"], 0)
-    if curves:
-        assert asked[-1] == (curve.KIND, kinds[:-1], 0)
 
 
 @pytest.mark.parametrize(("missing", "shows"), [(3, True), (4, False)])

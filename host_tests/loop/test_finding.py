@@ -89,6 +89,7 @@ def test_a_path_that_repeats_without_a_temperature_is_told_by_time_and_never_con
     for s in device.sessions:
         s.sources.clear()
     analysis = analyse(device.sessions)
+    assert analysis.selection.judged_again and not analysis.selection.alone
     [step] = report(analysis)["effects"]
     assert (step["effect"], step["confidence"]) == ("power-on-transient", "tentative")
     assert "cause not identified; no temperature was recorded" in step["said"]

@@ -11,21 +11,12 @@ from zerorate_tools.model.term import Term
 
 from . import dense
 from .dense import A, B, C, D
-from .selections import candidate, warm
+from .selections import candidate
 
 TEMP = Term("temp", 10.0, 40.0, 25.0)
 LOOP = candidate(Term("temp", memory="play", width=4.0), kind=KIND)
 SIMPLER = [candidate(A, kind="thermal-lag"), candidate(B, kind="temperature-kink")]
 POOL = [*SIMPLER, candidate(C, kind="supply-voltage")]
-
-
-def test_play_operators_are_of_all_widths_over_all_sessions_temperatures():
-    made = [warm(temp=np.linspace(*ends, 50)) for ends in ((10.0, 20.0), (14.0, 30.0))]
-    every = hysteresis.play_operators(made)
-    assert [t.power for t in every] == [1, 2] * 6
-    widths = 2 * 20.0 * 0.03 * (0.5 / 0.03) ** (np.arange(6) / 5)
-    assert [t.width for t in every[::2]] == pytest.approx(widths.tolist())
-    assert {(t.lo, t.hi, t.centre) for t in every} == {(10.0, 30.0, 18.5)}
 
 
 @pytest.mark.parametrize(
@@ -105,14 +96,3 @@ def test_a_hysteresis_of_one_recording_passes_every_question(
         assert (decision.accepted, decision.ratio) == (True, 33.0)
         assert decision.p_value == pytest.approx(chi2.sf(33.0, 3))
         assert (decision.session_gains.tolist(), decision.inflation) == ([nats] * 2, 1.0)
-
-
-def test_errors_of_pieces_are_compared_with_the_best_bend_by_their_geometric_mean():
-    left = {
-        "whole": [[1.0, 2.0, 4.0]],
-        "a": [[3.0, 3.0, 3.0], [np.nan] * 3],
-        "b": [[2.0, 4.0, 8.0]],
-    }
-    pieces = SimpleNamespace(residual=lambda straight, terms: np.array(left[terms]))
-    factor = hysteresis._factor([], ["a", "b"], "whole", pieces)
-    assert factor == pytest.approx(3.0 / 2.0)

@@ -114,6 +114,7 @@ def test_rests_that_are_few_and_far_between_teach_no_bend():
     session.rate_dps[~rests] = np.nan
     session.weight[~rests] = 0.0
     found = analyse([session]).selection
+    assert found.alone and not found.judged_again
     assert any("too few rests" in reason for _, reason in found.refused)
 
 

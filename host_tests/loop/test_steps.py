@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from zerorate_bench.loop.simulated import simulate, simulate_corners
+from zerorate_tools.loop.analyse import analyse
 from zerorate_tools.loop.search.steps_first import remove_steps
 from zerorate_tools.model.term import first_order_lag
 
@@ -44,6 +45,11 @@ def test_three_large_steps_hide_none_of_them(seed):
     for step, sign in zip(clean.steps, (1, -1, 1)):
         off = step.size_dps - sign * 40 * floor * (1, -1, 1)
         assert (np.abs(off) < 5 * step.deviation_dps).all()
+
+
+def test_a_step_is_taken_out_of_a_recording_alone_where_less_is_left_without_it():
+    [session] = analyse([stepped(0, 40.0, 90)[0]]).sessions
+    assert [s.block - s.share for s in session.steps] == [90] and session.listed == ()
 
 
 @pytest.mark.parametrize("seed", range(3))
