@@ -10,6 +10,8 @@ import pytest
 from zerorate_tools import closing
 from zerorate_tools.ending import noted_signals, undisturbed
 from zerorate_tools.errors import InFile
+from zerorate_tools.importers import import_recording
+from zerorate_tools.importers.samples import spool
 from zerorate_tools.recordings.atomic import all_written_together, written_beside, written_together
 
 from host_tests.tools.killed_recorders import MOST_S, trials
@@ -91,7 +93,7 @@ def test_a_name_of_255_bytes_is_written_and_a_longer_one_refused(tmp_path):
     assert [p.name for p in tmp_path.iterdir()] == [name]
 
 
-def test_close_leaves_the_folder_as_it_was_where_its_report_has_no_room(old, monkeypatch):
+def test_close_and_import_leave_the_folder_as_it_was_where_there_is_no_room(old, monkeypatch):
     before = contents(old)
     monkeypatch.setattr(closing, "load", lambda *arguments: None)
     monkeypatch.setattr(closing, "run_and_prune", lambda *arguments: (None, None))
@@ -100,6 +102,10 @@ def test_close_leaves_the_folder_as_it_was_where_its_report_has_no_room(old, mon
     with pytest.raises(InFile, match="No space left"):
         closing.close(["x"], old)
     assert contents(old) == before
+    (old / "run.csv").write_text("t_s,gx_dps,gy_dps,gz_dps\n0,1,2,3\n")
+    monkeypatch.setattr(spool.Spool, "append", full)
+    with pytest.raises(InFile, match="o.csv: cannot be written: No space left.*make room"):
+        import_recording(old / "run.csv", old / "o.csv")
 
 
 NUMBERS = [signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)]

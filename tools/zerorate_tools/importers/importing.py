@@ -14,7 +14,7 @@ import numpy as np
 
 from ..errors import BadRecording, refuse_odd_name
 from ..recordings import Recording, Scales, check_output, open_recording, recording_writer
-from ..recordings.atomic import check_apart, written_together
+from ..recordings.atomic import check_apart, no_room_said, written_together
 from ..recordings.reading import recording_name, whole
 from ..recordings.recording import ACCEL, COLUMNS, TIME
 from .columns.guesses import FASTEST_DPS
@@ -163,7 +163,7 @@ def _imported(
         check_output(out)
     check_apart(outs, every)
     folder = outs[0].absolute().parent
-    with ExitStack() as files:
+    with no_room_said(outs[0], "make room, or name another folder"), ExitStack() as files:
         opened = [_opened(source, how, advance, folder, files) for source in sources]
         ready = _ready(opened)
         writers = [

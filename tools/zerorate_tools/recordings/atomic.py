@@ -41,7 +41,7 @@ def all_written_beside(paths: Iterable[str | os.PathLike[str]]) -> Iterator[list
                 draft = _draft(place.parent, place, "name a folder that exists and is yours")
                 drafts[place.parent] = stack.enter_context(draft)
         temporaries = [drafts[place.parent] / place.name for place in places]
-        with _no_room_said(first, "make room, or name another folder"):
+        with no_room_said(first, "make room, or name another folder"):
             for temporary in temporaries:
                 temporary.touch()
             yield temporaries
@@ -105,7 +105,7 @@ def all_written_together(folders: Iterable[str | os.PathLike[str]]) -> Iterator[
                 draft = _draft(there, folder, "name a folder that is yours")
                 drafts[there.resolve()] = stack.enter_context(draft)
             within.append(drafts[there.resolve()] / folder.relative_to(there))
-        with _no_room_said(wanted[0], "all is as it was; make room"):
+        with no_room_said(wanted[0], "all is as it was; make room"):
             for inside in within:
                 inside.mkdir(parents=True, exist_ok=True)
             yield within
@@ -134,7 +134,8 @@ def _draft(folder: Path, shown: Path, do: str) -> Iterator[Path]:
 
 
 @contextmanager
-def _no_room_said(path: Path, do: str) -> Iterator[None]:
+def no_room_said(path: Path, do: str) -> Iterator[None]:
+    """Raise InFile, of the path, where a disk takes no more within the block."""
     try:
         yield
     except OSError as error:
