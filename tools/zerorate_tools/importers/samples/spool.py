@@ -17,6 +17,8 @@ _MOST_WAITING = 2_000_000
 #: Rows in a row, from which on a stretch in order counts as one of its own.
 _LONG = 100
 _SHARED = 0.1
+#: NTP sets a clock that is off by more, and only slows or hastens one that is off by less.
+_STEP_US = 128e3
 
 
 #: The first and the last reading, each as (t_us, value).
@@ -114,7 +116,7 @@ class Runs:
 
     def __init__(self) -> None:
         self.steps_back = 0
-        self._long: list[tuple[float, float, int]] = []
+        self._long: list[tuple[float, float, int, float]] = []
         self._begin: tuple[float, int] | None = None
         self._last = 0.0
         self._rows = 0
@@ -138,13 +140,13 @@ class Runs:
         to well before the one above it: a clock was set back, or a counter ran over. Halves in the
         wrong order fit together."""
         self._close(self._last)
-        for (above, _, _), (begin, end, place) in zip(self._long, self._long[1:]):
+        for (above, *_), (begin, end, place, _) in zip(self._long, self._long[1:]):
             if above - end > _SHARED * (end - begin):
                 row = place + 1
                 raise BadRecording(path, "time begins anew", row=row, do=cut_words(path, row))
         latest, before = -np.inf, None
-        for begin, end, place in sorted(self._long):
-            if before is not None and latest - begin > _SHARED * (end - begin):
+        for begin, end, place, shared in sorted(self._long):
+            if before is not None and latest - begin > shared:
                 row = max(place, before) + 1
                 raise BadRecording(path, "time begins anew", row=row, do=cut_words(path, row))
             if end > latest:
@@ -152,7 +154,10 @@ class Runs:
 
     def _close(self, end: float) -> None:
         if self._begin is not None and self._rows >= _LONG:
-            self._long.append((self._begin[0], end, self._begin[1]))
+            begin, place = self._begin
+            ten_rows = _SHARED * _LONG * (end - begin) / self._rows
+            shared = min(_SHARED * (end - begin), max(_STEP_US, ten_rows))
+            self._long.append((begin, end, place, shared))
         self._rows = 0
 
 
