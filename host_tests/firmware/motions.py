@@ -1,6 +1,6 @@
 """Simulated motion for the two sources that learn without rest, in raw LSB with its true bias.
 
-And words of the source in motion as numbers, vectors, turns and matrices.
+And words of the source in motion as vectors and turns.
 """
 
 from array import array
@@ -10,17 +10,12 @@ from operator import mul
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 from scipy.spatial.transform import Rotation
-from zerorate.arithmetic import real
-from zerorate.arithmetic.real import pack, unpack
 from zerorate.motion.motion_settings import motion_settings
-from zerorate_tools.layout import MOTION, ROW
 
 GYRO_LSB_PER_DPS = 131.0
 ACCEL_LSB_PER_G = 16384.0
 SETTINGS = motion_settings()
-Q14, Q12, Q11 = 1 << 14, 4096, 2048
-SIZE = ROW.size
-STATES = SIZE - 1
+Q14, Q12 = 1 << 14, 4096
 
 
 class Motion:
@@ -110,22 +105,6 @@ class Fed:
         return np.array([1000 * (b - bias_dps) for t, b, _ in self.learned if t >= after_s])
 
 
-def stored(state, at, value):
-    """Put a float at word `at` as a number in two words."""
-    mantissa, exponent = np.frexp(value)
-    real.put(state, at, int(mantissa * (1 << 29)), int(exponent) - 29)
-
-
-def value_at(state, at):
-    """The number in two words at word `at`, a float."""
-    return float(np.ldexp(float(state[at]), state[at + 1]))
-
-
-def put_all(state, at, values):
-    for i, value in enumerate(values):
-        stored(state, at + 2 * i, value)
-
-
 def put_words(state, at, values):
     state[at : at + len(values)] = array("i", [int(round(v)) for v in values])
 
@@ -133,40 +112,3 @@ def put_words(state, at, values):
 def rotation_at(state, at):
     w, *xyz = state[at : at + 4]
     return Rotation.from_quat([*xyz, w])
-
-
-def put_rotation(state, at, turn, scale):
-    *xyz, w = turn.as_quat()
-    put_words(state, at, scale * np.array([w, *xyz]))
-
-
-def packed_at(state, at, count):
-    """Numbers of one word each."""
-    found = []
-    for i in range(count):
-        unpack(state, MOTION.T, at + i)
-        found.append(value_at(state, MOTION.T))
-    return np.array(found)
-
-
-def put_packed(state, at, values):
-    for i, value in enumerate(values):
-        stored(state, MOTION.T, value)
-        pack(state, at + i, MOTION.T)
-
-
-def covariance_at(state):
-    """The covariance that the filter holds, over the push's variance."""
-    matrix = np.zeros((STATES, STATES))
-    matrix[np.tril_indices(STATES)] = packed_at(state, MOTION.KNOWN, STATES * (STATES + 1) // 2)
-    return matrix + np.tril(matrix, -1).T
-
-
-def put_covariance(state, matrix):
-    put_packed(state, MOTION.KNOWN, matrix[np.tril_indices(STATES)])
-
-
-def positive(draw, size):
-    """A random positive definite matrix of all states."""
-    root = draw.normal(size=(STATES, STATES))
-    return size * (root @ root.T + 0.1 * np.eye(STATES))
