@@ -8,7 +8,7 @@ from zerorate_tools.loop.search import catalogue
 from zerorate_tools.loop.search.catalogue import candidates, ranges, varies
 from zerorate_tools.model.term import Term
 
-from .selections import candidate, warm
+from .selections import warm
 
 
 def test_a_source_s_range_leaves_out_extremes_that_no_several_blocks_share():
@@ -124,17 +124,3 @@ def test_a_late_part_adds_lags_or_the_rate_of_temperature_times_its_slope():
     assert [(t.lag_s, t.power, t.power_first) for t in lags] == every
     bare = replace(warm(), sources={})
     assert catalogue.late([bare]) == [] == catalogue.lags([bare])
-
-
-@pytest.mark.parametrize(
-    ("term", "follows"),
-    [
-        (Term("time"), True),
-        (Term("one", decay_s=9.0), True),
-        (Term("a"), False),
-        (Term("time", second="a"), False),
-    ],
-)
-def test_what_follows_the_clock_alone(term, follows):
-    assert candidate(term).follows_time is follows
-    assert not candidate(term, Term("a")).follows_time

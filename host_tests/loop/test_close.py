@@ -109,6 +109,6 @@ def test_of_three_recordings_every_row_is_left_out_once(logs, tmp_path):
     split = result["split"]
     assert split["pieces_of"] == split["train"] == ["session-1", "session-2"]
     rows = pq.read_table(tmp_path / "corrected.parquet").to_pandas()
-    assert set(rows["split"]) == {"test"}
+    assert set(rows["split"]) == {"test"} and not any("online" in name for name in rows)
     before, after = (np.array(split[f"pieces_{way}_mdps"]) for way in ("before", "after"))
     assert (after <= before).all() and after.max() < 0.5 * before.max()

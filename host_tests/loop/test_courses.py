@@ -14,10 +14,8 @@ from zerorate_tools.loop.verify.power_on import TurnOn
 from zerorate_tools.model import Slot, drafted
 from zerorate_tools.model.term import Term, first_order_lag
 
-from . import dense
-from .dense import A, B
 from .power_ons import MPU, PER, powered_on, with_volts
-from .selections import analysed, found, selected
+from .selections import analysed, found
 
 VOLTS = Term("vdd_mv", 4900.0, 5100.0, 5000.0)
 WARM = Term("temp", -20.0, 30.0, 5.0, power=2)
@@ -104,33 +102,12 @@ def test_over_what_was_fitted_only_before_and_after_are_run_and_online_as_it_beg
     assert x_lsb(course, "online_before") == pytest.approx(LEARNED_LSB)
 
 
-def test_without_a_model_after_is_as_before(lived):
-    course = lived(None).course("b", False, nothing)
-    assert course.bias["after"] == pytest.approx(course.bias["before"])
-
-
-def test_pieces_of_what_was_fitted_are_run_by_what_runs_pieces(lived):
-    pieces = SimpleNamespace(course=lambda sink, learning: sorted(learning))
-    runs = lived(None, 1, inside={"a": pieces})
-    assert runs.course("a", False, nothing) == []
-    assert runs.course("a", True, nothing) == ["online", "online_before"]
-
-
 @pytest.mark.parametrize(
     ("few", "single", "inside"), [(True, False, ["a", "b"]), (True, True, []), (False, False, [])]
 )
 def test_where_few_were_fitted_pieces_of_them_are_left_out_too(few, single, inside):
     train = [SimpleNamespace(name=name) for name in "ab"]
     assert run_kernels._inside(SimpleNamespace(train=train, few=few, single=single)) == inside
-
-
-def test_pieces_of_a_recording_are_fitted_with_the_others_that_were_fitted(monkeypatch):
-    monkeypatch.setattr(run_kernels, "PiecesByKernels", lambda p, scales, *of: of)
-    monkeypatch.setattr(run_kernels, "PieceRuns", lambda pieces, *of: pieces)
-    a, b, c = train = [SimpleNamespace(name=name) for name in "abc"]
-    analysis = SimpleNamespace(train=train, single=False, selection=None, motion=InMotion())
-    told = run_kernels._by_pieces(analysis, SimpleNamespace(session=b), MPU)
-    assert told == ([a, c],)
 
 
 def test_models_are_none_those_of_the_first_effects_and_the_whole_one(supplied):
@@ -178,49 +155,6 @@ def test_what_the_integers_round_is_the_difference_to_the_same_terms_in_floats(t
     lagged = first_order_lag(p.session.sources["volt"] - 5000.0, 8.0, 1.0)
     held = np.r_[lagged[0], lagged[:-1]].reshape(20, 4).mean(axis=1)
     assert wrong[0] == pytest.approx(0.001 * np.sqrt((held**2).mean()), rel=0.02)
-
-
-def course(**ways):
-    return courses.Course(np.arange(4), {}, {w: np.full((4, 3), e) for w, e in ways.items()})
-
-
-def measured(held, pieces=None):
-    every = {"h": held, "p": pieces} if pieces else {"h": held}
-    return courses.Courses(every, ["h"], np.zeros(3), inside=["p"] if pieces else [])
-
-
-GOOD = course(before=1.0, after_1=0.5, after=0.4)
-BAD = course(before=1.0, after_1=0.5, after=np.array([0.4, 0.6, 0.4]))
-
-
-@pytest.mark.parametrize(
-    ("held", "pieces", "harmful"),
-    [
-        (GOOD, None, False),
-        (GOOD, GOOD, False),
-        (BAD, None, True),
-        (BAD, GOOD, True),
-        (GOOD, BAD, True),
-    ],
-)
-def test_what_is_harmful_goes_by_what_was_held_out_and_then_by_the_pieces(held, pieces, harmful):
-    two = selected([dense.made(1, 24)], found(A), found(B))
-    less = run_kernels._without_harmful(two, measured(held, pieces), None)
-    axes = [(True,) * 3, (True, False, True)]
-    assert [f.axes for f in less.found] == axes if harmful else less is two
-
-
-@pytest.mark.parametrize(("alone", "stays"), [(0.95, True), (0.5, False)])
-def test_an_effect_in_doubt_is_asked_what_the_others_do_alone(alone, stays):
-    two, asked = selected([dense.made(1, 24)], found(A), found(B)), []
-
-    def again(selection):
-        asked.append(selection.terms)
-        return measured(course(before=9.0, after_1=alone, after=9.0))
-
-    needed = measured(course(before=1.0, after_1=1.5, after=0.9))
-    less = run_kernels._without_harmful(two, needed, again)
-    assert (less is two) == stays and asked[-1] == [B]
 
 
 @pytest.fixture

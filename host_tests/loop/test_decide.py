@@ -37,33 +37,6 @@ def test_columns_count_as_many_tests_as_they_are_apart(columns, tests):
     assert decide.effective(columns) == pytest.approx(tests)
 
 
-BY_NOISE = "no better than irrelevant channels on this noise"
-NOT_AGAIN = "does not predict the sessions left out"
-
-
-@pytest.mark.parametrize(
-    ("terms", "ratio", "tried", "of_noise", "nats", "p_value", "inflation", "reason"),
-    [
-        ((A,), 12.0, 10.0, 0.0, 9.0, 10 * chi2.sf(12.0, 3), 1.0, "not significant"),
-        ((A, B), 5.0, 1.0, 0.0, 9.0, chi2.sf(5.0, 6), 1.0, "not significant"),
-        ((A,), 40.0, 2.0, 1e-2, 9.0, 0.02, 1.5, BY_NOISE),
-        ((A,), 80.0, 1e9, 1e-6, 9.0, 1.0, 1.5, BY_NOISE),
-        ((A, B), 40.0, 2.0, 1e-6, 3.3, 4e-6, 1.5, ""),
-        ((A,), 40.0, 2.0, 1e-6, 3.0, 2e-6, 1.5, NOT_AGAIN),
-    ],
-)
-def test_every_lock_must_open(
-    sessions, answers, terms, ratio, tried, of_noise, nats, p_value, inflation, reason
-):
-    null = SimpleNamespace(survival=lambda ratio, columns: of_noise * columns, inflation=1.5)
-    answers(decide, null_ratios=null, gains=np.full(3, nats / 3))
-    told = decide.decide(Regression(sessions), [], candidate(*terms), ratio, tried, [B])
-    assert (told.accepted, told.reason) == (not reason, reason)
-    assert (told.ratio, told.inflation) == (ratio, inflation)
-    assert told.p_value == pytest.approx(p_value)
-    assert told.session_gains.tolist() == [nats / 3] * (3 * (reason in ("", NOT_AGAIN)))
-
-
 def test_one_recording_has_no_other_to_predict_it(sessions, answers):
     answers(decide, null_ratios=SimpleNamespace(survival=lambda *of: 1e-6, inflation=1.0))
     told = decide.decide(Regression(sessions[:1]), [], candidate(A), 40.0, 2.0, [B])

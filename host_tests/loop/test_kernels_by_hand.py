@@ -1,7 +1,6 @@
 """Pieces of one recording judged by the firmware itself, beside devices run one by one."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -79,20 +78,6 @@ def test_a_piece_s_model_is_fitted_to_the_others_and_run_by_its_device(power_on,
     assert not np.allclose(spared, left)
 
 
-def test_a_stretch_is_run_from_three_blocks_before_it(power_on):
-    pieces, told = PiecesByKernels(power_on, MPU), []
-
-    def run(frames, learn):
-        told.append(len(frames) // PER)
-        return np.zeros((len(frames), 3)) + learn
-
-    left = pieces._left([SimpleNamespace(run=run)] * 10, whole=False)
-    begins = np.flatnonzero(np.diff(pieces.fold, prepend=-1))
-    ends = [*begins[1:], BLOCKS]
-    assert told == [end - max(begin - 3, 0) for begin, end in zip(begins, ends)]
-    assert left == pytest.approx(power_on.rate_dps)
-
-
 def test_what_the_firmware_cannot_hold_has_no_error_and_gains_nothing(power_on):
     pieces = PiecesByKernels(power_on, MPU)
     beyond = replace(VOLTS, lag_mode="lag", lag_s=1e9)
@@ -154,31 +139,3 @@ def test_a_stretch_behind_a_step_is_judged_about_its_own_mean(power_on):
     plain = PiecesByKernels(power_on, MPU).residual([], [])
     assert left == pytest.approx(stepped.about_stretches(plain), abs=0.1 / 131)
     assert not np.allclose(left, plain)
-
-
-def test_no_online_is_written_unless_it_was_asked_for(tmp_path, power_on):
-    from zerorate_tools.loop.verify.run_kernels import _sink
-
-    class Writer:
-        rows = []
-
-        def write(self, recording, frames, test, biases):
-            self.rows.append((recording, test.tolist(), sorted(biases)))
-
-    (frames,) = power_on.frames()
-    few = frames.__class__(frames.t_us[:2], frames.frames[:2], frames.dt_us[:2], frames.extra[:2])
-    biases = dict.fromkeys(("before", "after", "online"), 0)
-    for test, online in ((True, False), (False, True)):
-        _sink(Writer(), power_on, test, online)("s", few, biases)
-    assert Writer.rows == [
-        ("s.parquet", [True, True], ["after", "before"]),
-        ("s.parquet", [False, False], ["after", "before", "online"]),
-    ]
-
-
-def test_a_tick_begins_with_its_first_sample(power_on):
-    late = replace(power_on, session=replace(power_on.session, start_us=999))
-    (frames,) = late.frames()
-    step_us = round(late.session.tick_s * 1e6)
-    at_us = 999 + np.array([0, step_us - 1, step_us, 3 * step_us - 1])
-    assert late.ticks(replace(frames, t_us=at_us)).tolist() == [0, 0, 1, 2]

@@ -1,21 +1,15 @@
 """What motion shows, part by part: whether recordings are of one device, and how one moves."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from scipy.stats import f as fisher
-from zerorate_tools.loop.motion import by_windows, heading, scales_and_timing, windows
+from zerorate_tools.loop.motion import by_windows, heading, windows
 from zerorate_tools.loop.motion.clock import evenly
-from zerorate_tools.loop.motion.device import LEVEL, DifferentDevices, Shown, check_one_device
+from zerorate_tools.loop.motion.device import DifferentDevices, Shown, check_one_device
 from zerorate_tools.loop.motion.heading import heading_lost
 from zerorate_tools.loop.motion.moving import Moving, _attitude_by, check_axes, moving_of
-from zerorate_tools.loop.motion.scales_and_timing import InMotion, Timing
 from zerorate_tools.loop.read.gate import CannotClose
-from zerorate_tools.loop.read.sessions import Session
-from zerorate_tools.model import Slot
-from zerorate_tools.model.term import Term
 from zerorate_tools.recordings import write_recording
 from zerorate_tools.simulate.attitude import IDENTITY, integrate
 
@@ -47,29 +41,6 @@ def test_recordings_of_two_devices_are_parted_and_those_that_tell_little_said_to
     assert parted(0.005, 0.0051, 0.0049) is None and parted(0.005, -0.005) is None
 
 
-@pytest.mark.parametrize(("share", "refused"), [(0.99, False), (1.01, True)])
-def test_recordings_are_of_two_devices_beyond_one_chance_in_a_million_of_all_splits(share, refused):
-    ratio = fisher.isf(LEVEL / 4, 9, 9)  # of the four ways to part three in two or none
-    apart = share * np.sqrt(1.5 * ratio / 1e8)
-    assert bool(parted(0.0, 0.0, apart)) is refused
-
-
-@pytest.mark.parametrize(
-    ("beside", "tilted", "is_planar"),
-    [(0, 0, True), (0.09, 0, True), (0.11, 0, False), (0, 0.09, True), (0, 0.11, False)],
-)
-def test_who_turns_about_one_axis_in_one_pose_moves_in_a_plane(beside, tilted, is_planar):
-    at_s, accel = np.arange(3000) / 50, np.zeros((3000, 3))
-    swing, slow = (np.sqrt(2) * np.sin(2 * np.pi * hz * at_s) for hz in (1.3, 0.05))
-    rate = np.column_stack([beside * np.cos(2 * np.pi * 1.3 * at_s) * np.sqrt(2), 0 * swing, swing])
-    size = np.sqrt(1 - beside**2)
-    accel[:, 0], accel[:, 2] = tilted * slow, np.sqrt(1 - (tilted * slow) ** 2)
-    every = np.ones(3000, bool)
-    rate[:, 2] *= size
-    one = Moving("x", rate, accel, at_s, every, ~every, np.zeros(3), np.zeros((0, 4)))
-    assert one.planar is is_planar
-
-
 def test_an_attitude_by_true_rates_is_known_where_these_are():
     rate = np.full((100, 3), [0.0, 0.0, 90.0])
     rate[40:45] = np.nan
@@ -79,113 +50,6 @@ def test_an_attitude_by_true_rates_is_known_where_these_are():
     steps = np.diff(turned)
     assert steps[np.isfinite(steps)] == pytest.approx(np.full(93, 1.8), abs=1e-6)
     assert turned[45] - turned[39] == pytest.approx(1.8, abs=1.9)
-
-
-# --- what is found, and what is made of it ---
-
-
-def six_blocks(name, moving, block_s=20.0, ticks_per_block=4, sources=(), **more):
-    """A session of which so many ticks of 5 s are no rest."""
-    ticks = np.where(np.arange(6 * ticks_per_block) < moving, np.nan, 0.0)[:, None] * np.ones(3)
-    rate, sources = np.ones((6, 3)), dict(sources)
-    whole = Session(name, block_s, ticks_per_block, rate, np.ones(6), sources, **more)
-    return replace(whole, ticks_dps=ticks)
-
-
-def late(delay_s=0.004, p=1e-5, sessions_s=(0.003, 0.005)):
-    return Timing(delay_s, 0.001, p, sessions_s)
-
-
-@pytest.mark.parametrize(
-    ("timing", "found"),
-    [
-        *((late(), True), (late(-0.004, sessions_s=(-0.1,)), True), (late(p=1.1e-4), False)),
-        *((late(p=0.9e-4), True), (late(sessions_s=(0.01, -0.01)), False), (late(9e-5), False)),
-        *((late(1.1e-4), True), (late(-9e-5), False), (late(sessions_s=()), False)),
-    ],
-)
-def test_a_delay_is_found_where_it_is_sure_alike_in_all_and_not_small(timing, found):
-    assert timing.found is found and InMotion(timing=timing).found is found
-
-
-def test_a_matrix_that_a_reference_shows_goes_out_of_the_blocks_and_into_three_slots():
-    matrix = np.arange(9.0).reshape(3, 3) / 100
-    scale = SimpleNamespace(
-        found=True, deployed=matrix, reference=by_windows.GIVEN, kind="cross-axis",
-        fastest_dps=np.array([10.0, 20.0, 30.0]),
-    )  # fmt: skip
-    rates = {f"rate_{a}": np.arange(12.0) * k for k, a in enumerate("xyz", 1)}
-    session = six_blocks("s", 8, sources=rates, ticks_per_block=2, block_s=10.0)
-    block = np.outer(np.arange(6) * 2 + 0.5, [1.0, 2.0, 3.0])
-    left = scales_and_timing.without_scales(session, InMotion(scale)).rate_dps
-    assert left == pytest.approx(1.0 - block @ matrix.T)
-    terms = [Term(f"rate_{a}", -10.0 * k, 10.0 * k) for k, a in enumerate("xyz", 1)]
-    slots = [Slot(t, tuple(c), "cross-axis") for t, c in zip(terms, matrix.T.tolist())]
-    assert scales_and_timing.slots_of(InMotion(scale)) == slots and InMotion(scale).found
-    unsure = SimpleNamespace(**{**vars(scale), "found": False})
-    by_gravity = SimpleNamespace(**{**vars(scale), "reference": by_windows.GRAVITY})
-    bare = replace(session, sources={})
-    cases = ((session, unsure), (session, by_gravity), (bare, scale), (session, None))
-    for some, shown in cases:
-        turned = scales_and_timing.rates_of_turning(some, InMotion(shown))
-        assert turned.shape == (6, 3) and not turned.any()
-    assert scales_and_timing.slots_of(InMotion(unsure)) == [] and not InMotion(unsure).found
-    assert scales_and_timing.in_motion([session], [], None) == InMotion()
-    assert not scales_and_timing.may_show_motion(session)
-    assert scales_and_timing.may_show_motion(six_blocks("s", 9))
-
-
-def test_sessions_that_move_are_asked_and_all_must_have_a_delay_to_tell_one(monkeypatch):
-    delay = np.random.default_rng(1).random((600, 2))
-    one, still = six_blocks("a", 9, delay=delay), six_blocks("b", 8, delay=delay)
-    monkeypatch.setattr(scales_and_timing, "moving_of", lambda log: None if log == "of c" else log)
-    monkeypatch.setattr(scales_and_timing, "by_windows", lambda *of: of)
-    logs = {name: f"of {name}" for name in "abcde"}
-    beside, held = [replace(one, name="c"), replace(one, name="d")], [replace(one, name="e"), still]
-    told = scales_and_timing.in_motion([one, still], held, logs, beside)
-    assert told.rate_scale == (["of a", "of d"], ["of e"])
-    assert told.timing == scales_and_timing.timing_of([(delay, 5.0)] * 2)
-    without = scales_and_timing.in_motion([one, replace(one, delay=None)], [], logs)
-    assert without.timing is None
-
-
-@pytest.mark.parametrize(
-    ("ticks", "still", "told"), [(240, 0, True), (239, 0, False), (240, 30, False), (270, 30, True)]
-)
-def test_a_delay_is_told_of_eight_half_minutes_in_motion_and_more(ticks, still, told):
-    products = np.random.default_rng(2).random((ticks, 2)) + [0.0, 1.0]
-    products[:still] = 0.0
-    assert (scales_and_timing.timing_of([(products, 1.0)]) is not None) is told
-    if told:
-        assert scales_and_timing.timing_of([(products, 1.0), (0 * products, 1.0)]) is None
-
-
-@pytest.mark.parametrize(
-    ("reference", "after", "unseen", "found"),
-    [
-        *((by_windows.GIVEN, 6.1, 8, True), (by_windows.GIVEN, 6.2, 8, False)),
-        *((by_windows.GRAVITY, 6.01, 0, False), (by_windows.GRAVITY, 5.9, 0, True)),
-        (by_windows.GIVEN, 6.1, 9, False),
-    ],
-)
-def test_a_matrix_is_found_where_some_of_it_is_seen_and_a_heading_is_hardly_worse(
-    monkeypatch, reference, after, unseen, found
-):
-    """A heading that is given scatters by 2 percent."""
-    large = np.full((3, 3), 0.05), np.full((3, 3), 0.01), 1e-9, "scale-factor", reference
-    seen = np.full(3, 300.0), np.arange(9).reshape(3, 3) < unseen
-    unit = by_windows.UNIT[reference]
-    tilts = 2.0, 1.0, unit, 40
-    shown = by_windows.RateScale(*large, np.ones(2), *tilts, *seen, 1.0, large[0], (6.0, 1.0))
-    monkeypatch.setattr(by_windows, "heading_lost", lambda judged: (6.0, after))
-    assert by_windows._judged_by_heading(shown, [], []).found is found
-    lost = iter([None, (6.0, after)])  # what was left out sees no stretch of a heading
-    monkeypatch.setattr(by_windows, "heading_lost", lambda judged: next(lost))
-    fitted = by_windows._judged_by_heading(shown, [], [])
-    assert fitted.found is found and (f"{after:.2f} degrees" in "".join(fitted.notes)) is (
-        after in (6.2, 6.01)
-    )
-    assert f"sees 1.23 {unit}" in by_windows.seen_in_words(1.234, unit)
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from zerorate_bench.loop.simulated import flicker, simulate
 from zerorate_tools.allan import Noise, overlapping
-from zerorate_tools.loop.read.lines import SEGMENT, Segments, find, spectrum
+from zerorate_tools.loop.read.lines import find, spectrum
 from zerorate_tools.loop.read.sessions import Session
 from zerorate_tools.loop.search.select import Search
 
@@ -91,25 +91,3 @@ def test_a_broad_hump_is_said_once():
         rates.append(np.fft.irfft(spectrum_of * gain[:, None], N, axis=0))
     found = lines(rates)
     assert len(found) == 1 and found[0].hz == pytest.approx(0.2, abs=0.01)
-
-
-def test_a_line_of_one_session_alone_is_not_the_devices():
-    rng = np.random.default_rng(2)
-    rates = [coloured(rng) for _ in range(4)]
-    rates[0] += 0.01 * np.sin(2 * np.pi * np.arange(N) / 50)[:, None]
-    assert lines(rates) == []
-
-
-def test_segments_that_were_not_at_rest_are_left_out():
-    rng = np.random.default_rng(3)
-    rate = rng.normal(0, 0.05, (6 * SEGMENT, 3))
-    tick = np.arange(len(rate)) // 100
-    still = np.ones(tick[-1] + 1, bool)
-    still[0] = False
-    segments = Segments()
-    for part in np.array_split(np.arange(len(rate)), 7):
-        segments.add(tick[part], rate[part])
-    quick = segments.at_rest(still, 100.0)
-    assert quick.averages == 5
-    # the window widens a bin by half: 1.5 times what white noise has in one
-    assert quick.power[5:-5].mean() == pytest.approx(1.5 * 2 * 0.05**2 / SEGMENT, rel=0.1)

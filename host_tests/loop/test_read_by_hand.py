@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 from zerorate_tools.loop.read import blocks, lines, sessions
 from zerorate_tools.loop.read.bad_readings import BadReadings
 from zerorate_tools.loop.read.reference import Reference, attitude_names, declared
-from zerorate_tools.loop.read.sessions import Session, block_basis, common_sources
+from zerorate_tools.loop.read.sessions import Session, block_basis
 from zerorate_tools.model.term import Term, play
 from zerorate_tools.recordings.checks import GAP
 
@@ -125,34 +125,6 @@ def test_lines_of_every_session_are_found_by_their_size_the_strongest_first():
     )
 
 
-@pytest.mark.parametrize(
-    ("sessions", "averages", "ratio", "found"),
-    [(1, 1.0, 11.0, 0), (1, 1.0, 20.0, 1), (1, 2.0, 11.0, 1), (2, 1.0, 11.0, 0), (2, 1.0, 20.0, 1)],
-)
-def test_in_a_spectrum_that_averages_nothing_a_line_is_twelve_times_its_neighbours(
-    sessions, averages, ratio, found
-):
-    power = np.ones((1024, 3))
-    power[300] = ratio
-    train = [lines.Spectrum(power, 0.01, averages)] * sessions
-    assert [line.hz for line in lines.find(train, [], 1.0, 0.0)] == [3.0] * found
-
-
-def test_a_hump_reaches_over_short_gaps_and_ends_with_the_spectrum():
-    p = np.ones(100)
-    p[50:60] = p[63] = p[:3] = 0.0
-    assert lines._hump(p, 55, 4) == slice(46, 68)
-    assert lines._hump(p, 1, 4) == slice(0, 7)
-
-
-def test_of_a_long_recording_the_first_segments_are_kept(monkeypatch):
-    monkeypatch.setattr(lines, "_MOST_SEGMENTS", 3)
-    segments = lines.Segments()
-    for i in range(5):
-        segments.add(np.full(lines.SEGMENT, i), noise(i, lines.SEGMENT))
-    assert segments.ticks == [(0, 0), (1, 1), (2, 2)] and len(segments.power) == 3
-
-
 @pytest.mark.parametrize("seed", range(2))
 def test_noise_slopes_and_what_is_beyond_the_spectrum_are_no_lines(seed):
     walk = np.cumsum(noise(seed), axis=0) * 0.1 + noise(seed + 50)
@@ -214,29 +186,6 @@ def test_five_blocks_in_a_row_and_a_tenth_of_all_may_be_bridged(missing, few):
     available = np.ones(100, bool)
     available[missing] = False
     assert blocks.can_be_bridged(available) is few
-
-
-def test_a_session_tells_its_stretches_first_minute_and_what_moved():
-    rate = np.arange(30.0).reshape(10, 3)
-    rate[2] = np.nan
-    steps = tuple(SimpleNamespace(block=at) for at in (3, 8))
-    ticks_dps = np.ones((20, 3))
-    ticks_dps[[6, 7, 9, 12]] = np.nan
-    weight = np.r_[1.0, 0.0, np.ones(8)]
-    one = Session("s", 20.0, 2, rate, weight, {"b": 1, "a": 2}, steps=steps, ticks_dps=ticks_dps)
-    assert one.tick_s == 10.0 and one.time_s()[:2].tolist() == [5.0, 15.0]
-    assert one.available.nonzero()[0].tolist() == [0, 3, 4, 5, 6, 7, 8, 9]
-    assert one.first_still.tolist() == [0, 3, 4]
-    assert one.stretch.tolist() == [0] * 3 + [1] * 5 + [2] * 2
-    assert one.moving_s == 40.0 and one.moved.nonzero()[0].tolist() == [3]
-    there = one.available & (np.arange(10) < 8)
-    left = one.less_offsets(rate, there)[:, 0]
-    assert left[3:8].tolist() == [-6, -3, 0, 3, 6] and left[0] == 0
-    assert left[8] == 24 - rate[there, 0].mean()  # none of its own is there
-    assert common_sources([one, Session("t", 20.0, 2, rate, weight, {"a": 3, "c": 4})]) == ["a"]
-    assert (one.source("one") == 1).all() and one.source("a") == 2
-    bare = Session("u", 20.0, 2, rate, weight, {})
-    assert bare.moving_s == 0.0 and bare.moved.tolist() == [False] * 10
 
 
 def test_what_remembers_is_told_once_for_the_sources_of_a_session():

@@ -10,9 +10,7 @@ import pytest
 from zerorate_tools import LoopReport
 from zerorate_tools.loop.fit.free_curve import draw
 from zerorate_tools.loop.fit.regression import Regression
-from zerorate_tools.loop.motion.scales_and_timing import InMotion, Timing
 from zerorate_tools.loop.report import report as form
-from zerorate_tools.loop.report.motion_effects import interference, motion_effects
 
 from . import dense
 from .power_ons import MPU, at_rest
@@ -76,36 +74,6 @@ def test_what_an_import_declares_a_reference_is_no_channel(closing):
     assert "moving" not in analysis.sessions[0].sources and analysis.gate.dropped == {}
 
 
-def line(hz):
-    return SimpleNamespace(hz=hz, amplitude_dps=np.ones(3), p_value=1e-9, in_holdout=True)
-
-
-@pytest.mark.parametrize(
-    ("found", "moved", "hz", "left", "said"),
-    [
-        ([], False, (), False, "nothing-found"),
-        ([], False, (0.5, 2.0), False, "nothing-found"),
-        ([], False, (0.5,), True, "unexplained-residual"),
-        ([1], False, (), True, "effects-found"),
-        ([], True, (), True, "effects-found"),
-        ([], False, (2.0, 0.49), True, "effects-found"),
-    ],
-)
-def test_a_verdict_is_by_what_is_in_the_bias(found, moved, hz, left, said):
-    analysis = SimpleNamespace(
-        selection=SimpleNamespace(found=found),
-        motion=InMotion(timing=Timing(1.0, 0.1, 1e-9, (1.0,)) if moved else None),
-        lines=[line(one) for one in hz],
-        judgement=SimpleNamespace(residual_test=SimpleNamespace(left=left)),
-        few=False,
-    )
-    assert form.verdict(analysis) == said
-    told = [one["effect"] for one in motion_effects(analysis, [1.0, 2.0, 3.0])]
-    slow = [one for one in hz if one < 0.5]
-    assert told == ["sample-timing"] * moved + ["periodic-interference"] * len(slow)
-    assert [one["hz"] for one in interference(analysis.lines)] == [h for h in hz if h >= 0.5]
-
-
 @pytest.mark.parametrize(
     ("table", "beside", "told"),
     [((0.5,) * 9, (), True), (None, (), False), ((0.5,) * 9, (1,), False)],
@@ -121,14 +89,3 @@ def test_what_a_curve_s_one_form_loses_is_told_of_a_single_slot(table, beside, t
     if told:
         every = draw(regression, [dense.B, dense.C], term)[1]
         assert list(lost.values()) == [pytest.approx(every, abs=6e-5)]
-
-
-def test_coefficients_are_named_by_source_power_and_the_place_of_a_bend():
-    bend, square = replace(dense.A, knot=2.5, centre=30.0), replace(dense.A, power=2)
-    for terms, names in (
-        ([dense.A, dense.B], ["a", "b"]),
-        ([dense.A, square, dense.B], ["a^1", "a^2", "b"]),
-        ([dense.A, bend], ["a^1", "a>32.5"]),
-    ):
-        own = [SimpleNamespace(term=term) for term in terms]
-        assert [form._name(slot, own) for slot in own] == names

@@ -9,7 +9,6 @@ from scipy.optimize import brentq
 from zerorate_tools.loop.fit.free_curve import draw, parts
 from zerorate_tools.loop.fit.regression import Regression
 from zerorate_tools.loop.search import refine
-from zerorate_tools.loop.search.catalogue import MARGIN
 from zerorate_tools.loop.search.examine import cancels
 from zerorate_tools.loop.search.selection import Selection, fits_in_slots
 from zerorate_tools.model.term import Term
@@ -91,15 +90,6 @@ def test_what_is_refined_stays_within_what_the_firmware_and_a_recording_can_hold
         told = refined(Term("a", **{name: start}), name, sign)
         assert told == pytest.approx(end, rel=0.03)
         assert least * 0.999 <= told <= most * 1.001
-
-
-@pytest.mark.parametrize("sign", [1, -1])
-@pytest.mark.parametrize("name", ["knot", "centre", "second_centre"])
-def test_a_place_is_refined_by_a_fifth_of_the_range_seen_at_most(name, sign):
-    both = Term("a", 2.0, 12.0, 7.0, knot=7.0, second="b")
-    both = replace(both, second_lo=2.0, second_hi=12.0, second_centre=7.0)
-    seen = 10.0 / (1.0 + 2.0 * MARGIN)
-    assert refined(both, name, sign) == pytest.approx(7.0 + sign * 0.2 * seen, abs=0.03 * seen)
 
 
 @pytest.fixture

@@ -1,7 +1,6 @@
 """Which steps are taken out of a session, when they were, and what else was seen then."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,23 +10,10 @@ from zerorate_tools.loop.search import steps_first
 from zerorate_tools.model.term import Term
 
 from . import dense
-from .dense import A
 from .selections import step
 
 BLOCKS, TICKS = 60, np.arange(120)
 COLD = Term("temp", centre=20.0)
-
-
-@pytest.mark.parametrize(
-    ("term", "per_degc"),
-    [
-        *((COLD, 1.0), (replace(COLD, power=2), 10.0), (replace(COLD, power=3), 75.0), (A, 0.0)),
-        (replace(COLD, lag_s=10.0, lag_mode="lag", power=2), 10.0 * (1 - np.exp(-2.0)) / 2),
-        (replace(COLD, lag_s=10.0, lag_mode="rate"), (1 - np.exp(-2.0)) / 20.0),
-    ],
-)
-def test_a_jump_of_temperature_moves_a_term_by_its_slope_less_what_a_lag_forgets(term, per_degc):
-    assert steps_first._slope(term, 25.0, 20.0) == pytest.approx(per_degc)
 
 
 @pytest.mark.parametrize(
@@ -60,17 +46,6 @@ def test_a_step_that_a_reading_of_the_thermometer_explains_is_none(
     assert steps_first._is_thermometers(regression, [line, bend], late, one) is explained
     blind = Regression([dense.white(4, BLOCKS)])
     assert not steps_first._is_thermometers(blind, [], {}, one)
-
-
-@pytest.mark.parametrize(
-    ("at", "seen"), [(90, True), (89, False), (129, True), (130, False), (1, False), (110, True)]
-)
-def test_a_knock_counts_within_ten_ticks_of_a_step(at, seen):
-    force = np.zeros(200)
-    force[at:] += 0.5
-    sources = {"acc_x": force, "acc_y": -force, "acc_z": np.ones(200)}
-    told, said = steps_first._by_accelerometer(SimpleNamespace(sources=sources), 100, 120)
-    assert (told, "0.71 g" in said) == ((at, True) if seen else (None, False))
 
 
 def in_ticks(known, jump, **sources):
@@ -131,27 +106,3 @@ def test_a_knock_within_its_ticks_has_the_step_s_moment(known, force, vib, at_s,
     session = in_ticks(known, 63, vib=vib, **{f"acc_{axis}": force for axis in "xyz"})
     told = steps_first._timed(session, STEP, np.zeros((120, 3)))
     assert told.at_s == at_s and seen in told.said
-
-
-@pytest.mark.parametrize(
-    ("second", "undone"),
-    [
-        *((step(32, [-0.1] * 3), True), (step(33, [-0.1] * 3, share=0.5), True)),
-        *((step(33, [-0.1] * 3, share=0.25), False), (step(32, [0.1] * 3), False)),
-        (step(32, [-0.1] * 3, session=1), False),
-    ],
-)
-def test_two_that_undo_each_other_within_two_blocks_are_a_disturbance(second, undone):
-    assert steps_first._undoes(step(31, share=0.5), second) is undone
-
-
-@pytest.mark.parametrize(
-    ("second", "sign", "listed"), [(31, 1, [2.0]), (31, -1, [1.0, -1.0]), (32, 1, [1.0, 1.0])]
-)
-def test_a_step_that_two_blocks_in_turn_show_is_one(answers, second, sign, listed):
-    one, two = step(30, deviation_dps=[0.3] * 3), step(second, [sign] * 3, [0.4] * 3)
-    answers(steps_first, hold_disturbed=None, steps_and_lags=([two, one], {}))
-    found = steps_first._steps(dense.white(4, BLOCKS), 1)
-    assert [s.size_dps.tolist() for s in found] == [[size] * 3 for size in listed]
-    assert found[0].block == 30
-    assert found[0].deviation_dps == pytest.approx([0.5 if len(listed) == 1 else 0.3] * 3)

@@ -4,8 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.stats import chi2, gamma
-from zerorate_tools.loop.fit.free_curve import parts
+from scipy.stats import chi2
 from zerorate_tools.loop.fit.regression import Regression, predicted
 from zerorate_tools.loop.read.sessions import Session, block_basis
 from zerorate_tools.loop.search import step_places
@@ -15,8 +14,7 @@ from zerorate_tools.loop.search.steps import standing, steps_and_lags
 from zerorate_tools.model.term import Term
 
 from . import dense
-from .dense import A, B
-from .selections import candidate, step
+from .dense import A
 
 BLOCKS = 60
 
@@ -72,31 +70,12 @@ def test_a_step_is_looked_for_away_from_either_end(blocks, places):
     assert not places or (ground[0], ground[-1]) == (8, blocks - 8)
 
 
-def test_no_step_is_looked_for_beside_motion():
-    ticks = np.zeros((40, 3))
-    ticks[20:22] = np.nan
-    ground = step_places._ground(quiet(40, ticks_dps=ticks))
-    assert sorted(set(range(8, 33)) - set(ground)) == [20, 21, 22]
-
-
 @pytest.mark.parametrize(("ramp", "sharper"), [(0.0, (20.0, 1e9)), (12.0, (-1e9, -10.0))])
 def test_a_step_explains_more_than_a_ramp_and_a_ramp_more_than_a_step(ramp, sharper):
     made = [noise(4), noise(5)]
     change = np.clip((np.arange(60) + 0.5 - 32.0) / max(ramp, 1.0) + 0.5 * bool(ramp), 0, 1)
     made[1].rate_dps[:] += np.outer(change, [9.0, -9.0, 9.0])
     assert sharper[0] < step_places.beyond_ramps(Regression(made), [A], 1, 32.0) < sharper[1]
-
-
-def test_where_the_device_did_not_rest_a_step_may_be_at_either_end():
-    def around(at, *moved):
-        weight = (~np.isin(np.arange(20), moved)).astype(float)
-        return step_places._around(replace(quiet(20), weight=weight), at)
-
-    assert around(7.0).tolist() == np.arange(6.25, 7.76, 0.25).tolist()
-    gap = around(8.0, 6, 7, 8, 9)
-    assert {6.0, 10.0, 8.0, 5.25, 10.75} <= set(gap) and gap.max() == 10.75
-    assert {1.0, 3.0} <= set(around(2.0, 1, 2, 19))
-    assert around(19.5, 1, 2, 19).max() == 20.25
 
 
 # --- steps ---
@@ -143,37 +122,6 @@ def test_the_chance_of_a_step_pays_for_every_place_and_recording():
 
 
 @pytest.mark.parametrize(
-    ("count", "times", "longer"), [(0, 1, False), (500, 0.2, False), (500, 3, True), (4, 3, False)]
-)
-def test_a_chance_is_by_the_places_away_from_steps_where_their_tail_is_longer(count, times, longer):
-    away = np.random.default_rng(0).chisquare(3, 500)[:count] * times
-    expected = chi2.sf(20.0, 3)
-    if longer:
-        mean, variance = (3 + away.mean()) / 2, (6 + away.var()) / 2
-        expected = gamma.sf(20.0, mean**2 / variance, scale=variance / mean)
-    assert listed._survival(20.0, away) == pytest.approx(expected)
-
-
-def test_places_near_a_step_of_the_session_say_nothing_of_chance():
-    at, ratios = np.arange(10, 56), np.arange(46.0)
-    steps = [step(30), step(11, session=1)]
-    away = listed._away(None, steps, [(0, at, ratios), (2, at, ratios)])
-    assert away.tolist() == [*ratios[abs(at - 30) > 16], *ratios]
-    assert listed._away(None, steps, []).tolist() == []
-
-
-def test_the_weakest_goes_where_not_all_stand_beside_each_other(sessions, monkeypatch):
-    asked = []
-    stand = lambda regression, terms, steps, *of: asked.append([*steps]) or len(steps) < 2  # noqa: E731
-    monkeypatch.setattr(listed, "_stand", stand)
-    regression = Regression(sessions)
-    left = standing(regression, [A], 1, [])
-    assert left == asked[1] == [max(asked[0], key=lambda s: s.ratio)]
-    assert len(regression.events()) == 1
-    assert standing(Regression([dense.made(0, 12)]), [A], 1, []) == []
-
-
-@pytest.mark.parametrize(
     ("gap", "degc", "unseen"),
     [((30, 32), 9.0, True), ((30, 31), 9.0, False), ((30, 32), 0.1, False), ((30, 32), None, True)],
 )
@@ -184,25 +132,6 @@ def test_a_change_across_blocks_without_rest_is_none_where_temperature_moved(gap
         session.sources["temp"] = np.linspace(0.0, degc, BLOCKS) * BLOCKS / 4
     assert bool(listed._is_unseen(session, gap[1])) is unseen
     assert not listed._is_unseen(session, 5) and not listed._is_unseen(session, 0)
-
-
-@pytest.mark.parametrize(
-    ("block", "dps", "deviation_dps", "jump_dps", "made"),
-    [
-        (30, (2.0, 0.0, 0.0), (0.7, 1.0, 1.0), (2.1, 0.0, 0.0), True),
-        (30, (2.0, 0.0, 0.0), (0.7, 1.0, 1.0), (2.0, 9.0, 0.0), False),
-        (30, (2.0, 0.0, 0.0), (0.7, 1.0, 1.0), (-2.1, 0.0, 0.0), True),
-        (30, (2.0, 2.0, 0.0), (1.0, 2.0, 9.0), (2.49, 0.04, 99.0), False),
-        (30, (2.0, 2.0, 0.0), (1.0, 2.0, 9.0), (2.51, 0.04, 99.0), True),  # y counts for a quarter
-        (BLOCKS, (2.0, 0.0, 0.0), (0.7, 1.0, 1.0), (2.1, 0.0, 0.0), False),
-    ],
-)
-def test_what_was_taken_beside_a_step_may_make_it_by_its_timing(
-    block, dps, deviation_dps, jump_dps, made
-):
-    one, at = step(block, dps, deviation_dps), min(block, BLOCKS - 1)
-    regression = Regression([noise(4, j=(np.arange(BLOCKS) >= at) * 1.0)])
-    assert listed._is_timing(regression, [Term("j")], np.array([jump_dps]), one) is made
 
 
 @pytest.mark.parametrize("size_dps", [0.0, 9.0])
@@ -226,18 +155,6 @@ def test_lags_that_the_recordings_show_stay_and_all_others_are_held_at_zero(size
         assert np.abs(made).max() < 0.05
 
 
-def test_a_form_of_several_terms_pays_for_those_that_a_step_does_not_have(sessions):
-    regression = Regression(sessions[:1])
-    one, two, curve = every = [candidate(*t) for t in ((A,), (A, B), parts(Term("a", -3, 9)))]
-    gains = [regression.gains([], [c.terms]).sum() for c in every]
-    worth = [gains[0], gains[1] - 6.0, gains[2] - 2.0 * (len(curve.terms) - 1)]
-    for some in ([one, two], [curve], every):
-        form, gain = listed._best_form(regression, [], some)
-        best = max(some, key=lambda c: worth[every.index(c)])
-        assert form is best and gain == pytest.approx(worth[every.index(best)])
-    assert listed._best_form(regression, [], []) == (None, 0.0)
-
-
 def test_what_a_recorded_channel_does_is_no_step():
     switched = np.where((np.arange(BLOCKS) // 15) % 2 > 0, 1.0, 0.0)
     session = noise(4, load=switched)
@@ -245,26 +162,3 @@ def test_what_a_recorded_channel_does_is_no_step():
     assert find_all(session) == []
     del session.sources["load"]
     assert len(find_all(session)) > 0
-
-
-@pytest.mark.parametrize(("beyond", "stands"), [(-5.9, True), (-6.0, False)])
-def test_a_step_stands_beside_a_ramp_with_those_within_eight_blocks_taken_out(
-    monkeypatch, beyond, stands
-):
-    there = []
-    monkeypatch.setattr(listed, "_set", lambda of, steps, kept: there.append(steps))
-    ramps = lambda of, terms, session, at: beyond - (at != 29.5)  # noqa: E731
-    monkeypatch.setattr(listed, "beyond_ramps", ramps)
-    steps = [step(30, session=1, share=0.5), step(38, session=1), step(39, session=1), step(31)]
-    assert listed._is_no_ramp(None, [], steps, steps[0], []) is stands
-    assert there == [steps[2:]]
-
-
-@pytest.mark.parametrize(("second", "same"), [(step(7), True), (step(8), False), (step(3), True)])
-def test_two_are_the_same_within_two_blocks_of_one_session(second, same):
-    assert listed._is_same(step(5), second) is same
-    assert not listed._is_same(step(5), step(5, session=1))
-
-
-def test_more_steps_than_one_are_rarer():
-    assert (listed._level(0), listed._level(1), listed._level(3)) == (2e-3, 5e-5, 5e-5)
