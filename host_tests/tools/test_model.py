@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 import zlib
 from dataclasses import replace
 
@@ -206,6 +207,11 @@ def test_check_asks_the_firmware(files, capsys):
     assert "model.json: refused by the firmware: the model was made for another chip" in (
         capsys.readouterr().err
     )
+    text = files[0].read_text()
+    alone = files[0].with_name("alone.json")
+    alone.write_text(re.sub(r'("odr_hz": )[0-9.]+', r"\g<1>9000", text))
+    assert main(["model", "check", str(alone)]) == 2
+    assert "alone.json: no firmware has such scales: odr_hz must be" in capsys.readouterr().err
 
 
 def test_check_finds_a_twin_that_is_none(files, model, capsys):

@@ -209,7 +209,11 @@ def check_model(
     # of what a device does not say, it is taken to be as the model says
     known = zip(codes_of(device or Binding()), codes_of(model.binding))
     codes = bytes(mine if asked == ANY else asked for asked, mine in known)
-    reason = EffectModel().load(encoded(model), sensor_for(scales or model.scales), codes)
+    try:
+        sensor = sensor_for(scales or model.scales)
+    except ValueError as error:
+        raise BadModel(path, f"no firmware has such scales: {error}", do=_ADVICE) from error
+    reason = EffectModel().load(encoded(model), sensor, codes)
     if reason != LOADED:
         raise BadModel(path, f"refused by the firmware: {REASONS[reason]}", do=_ADVICE)
     return model

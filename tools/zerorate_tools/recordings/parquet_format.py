@@ -25,7 +25,8 @@ def open_file(path: Path) -> pq.ParquetFile:
     if path.stat().st_size == 0:
         raise BadRecording(path, "empty file", do="record again, or name another file")
     try:
-        return pq.ParquetFile(path, pre_buffer=False, buffer_size=_BUFFER_BYTES)
+        how = {"buffer_size": _BUFFER_BYTES, "page_checksum_verification": True}
+        return pq.ParquetFile(path, pre_buffer=False, **how)
     except MemoryError as error:
         raise _too_large(path) from error
     except Exception as error:  # of a damaged one, whatever its parser stumbles over
@@ -95,6 +96,7 @@ class ParquetWriter:
             str(path),
             self._schema,
             compression="zstd",
+            write_page_checksum=True,
             use_dictionary=False,
             column_encoding=dict.fromkeys(names, "DELTA_BINARY_PACKED"),
         )
