@@ -8,7 +8,7 @@ import pytest
 from zerorate import checked
 from zerorate.checked import CheckedCorrector
 from zerorate.corrector import Corrector, Sensor
-from zerorate_tools.layout import AXIS, SETTINGS, STATE, TURN_ON
+from zerorate_tools.layout import AXIS, SETTINGS, STATE
 
 from .played import LSB, rest
 
@@ -75,46 +75,29 @@ def test_a_restart_takes_back_and_begins_a_new_power_on(feed):
     assert feed.bias_lsb() == pytest.approx(100, abs=1)
 
 
-def test_after_a_restart_an_offset_is_no_surer_than_one_of_a_turn_on(feed):
-    state, settings = feed.checked.corrector.state, feed.checked.corrector.settings
-    first, usual = settings[SETTINGS.AXES], settings[SETTINGS.TURN_ON_VARIANCE_Q8]
-    offset_of = slice(first + TURN_ON.TURN_ON_OFFSET_Q8, first)
-    variance_of = slice(
-        first + AXIS.OFFSET_VARIANCE_Q8,
-        first + 3 * settings[SETTINGS.AXIS_WORDS],
-        settings[SETTINGS.AXIS_WORDS],
-    )
-    state[offset_of] = array("i", [700, -800, 900])
-    state[variance_of] = array("i", [usual + 1, usual - 2, usual - 1])
-    feed.checked.keep()
-    feed.checked.update(feed.sample, 10000, checked.RESTARTED)
-    assert list(state[offset_of]) == [700, -800, 900]
-    assert list(state[variance_of]) == [usual + 1, usual, usual]
-
-
 def test_a_restart_brings_back_what_is_known_and_no_other_word(feed, monkeypatch):
     corrector = feed.checked.corrector
     state, settings = corrector.state, corrector.settings
     state[:] = array("i", range(1000, 1000 + len(state)))
+    axes, usual = settings[SETTINGS.AXES], settings[SETTINGS.TURN_ON_VARIANCE_Q8]
+    first, second, third = (
+        axes + axis * settings[SETTINGS.AXIS_WORDS] + AXIS.OFFSET_VARIANCE_Q8 for axis in range(3)
+    )
+    # an offset is no surer than one of a turn-on
+    unsure = {first: usual + 1, second: usual, third: usual}
     feed.checked.keep()
     said = []
 
     def power_on(same):
         said.append(same)
         state[:] = array("i", [-5] * len(state))
+        state[first], state[second] = usual + 1, usual - 1
 
     monkeypatch.setattr(corrector, "power_on", power_on)
     assert feed.checked.update(feed.sample, 10000, checked.RESTARTED) is False
-    axes = settings[SETTINGS.AXES]
     known = {*range(STATE.RESTS, STATE.SOURCE + 3), axes - 3, axes - 2, axes - 1}
-    surer = {
-        axes + axis * settings[SETTINGS.AXIS_WORDS] + AXIS.OFFSET_VARIANCE_Q8 for axis in range(3)
-    }
     for word, value in enumerate(state):
-        if word in surer:
-            assert value == settings[SETTINGS.TURN_ON_VARIANCE_Q8]
-        else:
-            assert value == (1000 + word if word in known else -5), word
+        assert value == unsure.get(word, 1000 + word if word in known else -5), word
     assert (said, feed.checked.taken_back, feed.checked.refused) == ([True], 1, 1)
 
 
