@@ -14,8 +14,10 @@ from zerorate_tools.loop.verify.power_on import TurnOn
 from zerorate_tools.model import Slot, drafted
 from zerorate_tools.model.term import Term, first_order_lag
 
+from . import dense
+from .dense import A, B
 from .power_ons import MPU, PER, powered_on, with_volts
-from .selections import analysed, found
+from .selections import analysed, found, selected
 
 VOLTS = Term("vdd_mv", 4900.0, 5100.0, 5000.0)
 WARM = Term("temp", -20.0, 30.0, 5.0, power=2)
@@ -155,6 +157,23 @@ def test_what_the_integers_round_is_the_difference_to_the_same_terms_in_floats(t
     lagged = first_order_lag(p.session.sources["volt"] - 5000.0, 8.0, 1.0)
     held = np.r_[lagged[0], lagged[:-1]].reshape(20, 4).mean(axis=1)
     assert wrong[0] == pytest.approx(0.001 * np.sqrt((held**2).mean()), rel=0.02)
+
+
+@pytest.mark.parametrize(("alone", "stays"), [(0.95, True), (0.5, False)])
+def test_an_effect_in_doubt_is_asked_what_the_others_do_alone(alone, stays):
+    def measured(**ways):
+        left = {way: np.full((4, 3), dps) for way, dps in ways.items()}
+        return courses.Courses({"h": courses.Course(np.arange(4), {}, left)}, ["h"], np.zeros(3))
+
+    two, asked = selected([dense.made(1, 24)], found(A), found(B)), []
+
+    def again(selection):
+        asked.append(selection.terms)
+        return measured(before=9.0, after_1=alone, after=9.0)
+
+    needed = measured(before=1.0, after_1=1.5, after=0.9)
+    less = run_kernels._without_harmful(two, needed, again)
+    assert (less is two) == stays and asked[-1] == [B]
 
 
 @pytest.fixture

@@ -1,15 +1,18 @@
 """What motion shows, part by part: whether recordings are of one device, and how one moves."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from zerorate_tools.loop.motion import by_windows, heading, windows
+from zerorate_tools.loop.motion import by_windows, heading, scales_and_timing, windows
 from zerorate_tools.loop.motion.clock import evenly
 from zerorate_tools.loop.motion.device import DifferentDevices, Shown, check_one_device
 from zerorate_tools.loop.motion.heading import heading_lost
 from zerorate_tools.loop.motion.moving import Moving, _attitude_by, check_axes, moving_of
+from zerorate_tools.loop.motion.scales_and_timing import InMotion
 from zerorate_tools.loop.read.gate import CannotClose
+from zerorate_tools.loop.read.sessions import Session
 from zerorate_tools.recordings import write_recording
 from zerorate_tools.simulate.attitude import IDENTITY, integrate
 
@@ -50,6 +53,17 @@ def test_an_attitude_by_true_rates_is_known_where_these_are():
     steps = np.diff(turned)
     assert steps[np.isfinite(steps)] == pytest.approx(np.full(93, 1.8), abs=1e-6)
     assert turned[45] - turned[39] == pytest.approx(1.8, abs=1.9)
+
+
+def test_a_matrix_goes_out_of_the_blocks_where_a_reference_shows_it():
+    rates = {f"rate_{a}": np.arange(12.0) * k for k, a in enumerate("xyz", 1)}
+    session = Session("s", 10.0, 2, np.ones((6, 3)), np.ones(6), rates)
+    matrix = np.arange(9.0).reshape(3, 3) / 100
+    block = np.outer(np.arange(6) * 2 + 0.5, [1.0, 2.0, 3.0])
+    for reference, times in ((by_windows.GIVEN, 1.0), (by_windows.GRAVITY, 0.0)):
+        shown = InMotion(SimpleNamespace(found=True, deployed=matrix, reference=reference))
+        left = scales_and_timing.without_scales(session, shown).rate_dps
+        assert left == pytest.approx(1.0 - times * block @ matrix.T)
 
 
 @pytest.mark.parametrize(
