@@ -62,13 +62,6 @@ class Histogram:
         return histogram.read_out_q8(self.s, self.h, self.bins) / 256
 
 
-def filled(mode, readings):
-    made = Histogram(mode)
-    for reading, weight in readings:
-        made.add(reading, weight)
-    return made
-
-
 def sound(made):
     """Assert what always holds."""
     assert all(width > 0 for width in made.widths)

@@ -22,20 +22,6 @@ def test_an_interval_of_an_rms_is_wider_where_rows_are_alike():
     assert (slow_high - slow_low) / (high - low) == pytest.approx(np.sqrt(15), rel=0.35)
 
 
-def test_rows_without_a_number_count_nowhere_and_runs_of_fifteen_are_drawn():
-    rows, drawn = np.arange(50.0)[:, None], []
-    torn = [np.vstack([rows[:20], [[np.nan]], rows[20:24]]), rows[24:]]
-    note = lambda r: drawn.append(r[:, 0]) or 0.0  # noqa: E731
-    block_bootstrap(torn, note)
-    assert len(drawn) == 1500 and all((np.diff(r)[:14] == 1).all() for r in drawn)
-    assert {len(r) for r in drawn} == {50} and {r[0] for r in drawn} == set(range(36))
-    drawn.clear()
-    block_bootstrap([rows[:30]], note)  # of thirty rows a run has a third
-    steps = np.diff(drawn)
-    assert (steps[:, :9] == 1).all() and (steps[:, 9] != 1).any()
-    assert block_bootstrap([np.array([[1.0], [3.0]])], np.mean) == (1.0, 3.0)
-
-
 def test_the_chance_of_an_irrelevant_candidate_is_chi_squared_s_where_its_ratios_are():
     theory = NullRatios.of(3.0, 6.0, 3)
     assert theory.inflation == 1.0

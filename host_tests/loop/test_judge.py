@@ -19,18 +19,6 @@ from .selections import analysed, found, selected
 
 
 @pytest.mark.parametrize(
-    ("p", "nats", "common", "smooth"),
-    [
-        *((1e-3, 3.0, False, False), (0.9e-3, 0.0, True, False)),
-        *((0.5, 3.1, False, True), (1e-9, 9.0, True, True)),
-    ],
-)
-def test_something_is_left_where_axes_move_together_or_drift_smoothly(p, nats, common, smooth):
-    test = ResidualTest(p, nats, np.zeros(3))
-    assert (test.common, test.smooth, test.left) == (common, smooth, common or smooth)
-
-
-@pytest.mark.parametrize(
     ("after", "gain", "p", "said"),
     [
         *(([1.0, 1.0, 1.0], 3.1, 1.0, "confirmed"), ([1.0, 1.0, 1.0], 3.0, 1.0, "tentative")),
@@ -193,12 +181,6 @@ def test_an_effect_goes_from_the_axes_on_which_the_error_grows(three, after, alo
     assert set(asked) <= {0} and [f.axes for f in three.found] == [ALL] * 3
 
 
-def test_an_axis_that_an_effect_does_not_correct_is_not_its_doing(three):
-    spared = replace(three, found=[found(A, axes=NOT_X)])
-    assert prune.without_harmful(spared, residuals([1, 1, 1], [2, 0.5, 0.5]), never) is spared
-    assert prune.without_harmful(three.first(0), residuals([1, 1, 1]), never).found == []
-
-
 @pytest.mark.parametrize(("before", "gone"), [([], 0), ([[4, 4, 4]], 1)])
 def test_what_was_taken_from_every_axis_is_withdrawn_with_both_errors(three, before, gone):
     every = [*before, [1, 1, 1], [2, 2, 2], [2, 2, 2], [2, 2, 2]]
@@ -227,36 +209,6 @@ def test_an_effect_that_helps_no_more_pieces_than_chance_is_withdrawn(three, bet
     for name, why in less.withdrawn:
         assert not less.found and name == "vibration"
         assert f"{sum(b > 0 for b in better)} of {len(better)} pieces" in why
-
-
-@pytest.mark.parametrize(("alone", "stay"), [(0.5, [1]), (2.0, [0, 1])])
-def test_of_two_effects_the_one_less_shown_goes_first(three, alone, stay):
-    left = lambda dps: [np.full((20, 3), dps)]  # noqa: E731
-    two, after = three.first(2), [left(3.0), left(2.0), left(1.0)]
-    less = prune.without_unshown(two, after, lambda i: left(alone), [np.arange(20)])
-    assert less.found == [two.found[i] for i in stay]
-
-
-@pytest.mark.parametrize(
-    ("gain", "without_dps", "stays"),
-    [(0.0, 0.5, True), (-0.01, 1.0, False), (-9.0, 0.5, False), (-9.0, 2.0, True)],
-)
-def test_an_effect_goes_where_both_the_likelihood_and_the_error_speak_against_it(
-    sessions, monkeypatch, gain, without_dps, stays
-):
-    def judged(selection, holdout):
-        effects = len(selection.found)
-        dps = np.full(3, 1.0 if effects else without_dps)
-        return replace(judge(selection, holdout), gains=np.full(effects, gain), after_dps=dps)
-
-    monkeypatch.setattr(prune, "judge", judged)
-    selection = selected(sessions[:3], found(A))
-    less, told = prune.prune_by_holdout(selection, sessions[3:])
-    assert (less is selection) is stays
-    assert told.after_rms == (1.0 if stays else without_dps)
-    said = f"by {-gain:.1f} nats: error with it 1e+03 mdps, without {1e3 * without_dps:.3g}"
-    reason = f"what was held out speaks against it {said}"
-    assert less.withdrawn == ([] if stays else [("vibration", reason)])
 
 
 def test_one_recording_alone_has_nothing_held_out_to_speak_against_it():

@@ -6,15 +6,12 @@ import numpy as np
 import pytest
 from zerorate_tools.loop.fit.single import PiecesByLine
 from zerorate_tools.loop.search.steps import Step
-from zerorate_tools.loop.verify import courses
 from zerorate_tools.loop.verify import power_on as module
 from zerorate_tools.loop.verify.by_kernels import PiecesByKernels
 from zerorate_tools.loop.verify.firmware import Firmware
-from zerorate_tools.model import Slot
 from zerorate_tools.model.term import Term
 
 from .power_ons import MPU, PER, powered_on, with_volts
-from .selections import found, selected
 
 VOLTS = Term("volt", 4000.0, 6000.0, 5000.0)
 LAGGED = replace(VOLTS, lag_mode="lag", lag_s=20.0)
@@ -91,45 +88,6 @@ def test_a_recording_read_in_parts_gives_what_it_gives_at_once(power_on, monkeyp
     monkeypatch.setattr(module, "_ROWS", 170)
     parts = PiecesByKernels(power_on, MPU).residual([], terms)
     assert parts == pytest.approx(whole, abs=0.3 / 131)
-
-
-@pytest.fixture(scope="module")
-def by_pieces(power_on):
-    pieces = PiecesByKernels(power_on, MPU)
-    chosen = selected([power_on.session], found(VOLTS), found(LAGGED), alone=True)
-    return pieces, chosen
-
-
-def test_of_one_recording_every_way_is_run_and_scored(by_pieces):
-    pieces, chosen = by_pieces
-    m = courses.PieceRuns(pieces, chosen, [])
-    assert list(m.models) == ["before", "after_1", "after"]
-    assert [len(m.models[way][0].slots) for way in ("after_1", "after")] == [1, 2]
-    seen = []
-    course = m.course(lambda name, frames, biases: seen.append(sorted(biases)))
-    ways = ["after", "after_1", "before", "online", "online_before"]
-    assert seen == [ways] and sorted(course.residual) == ways
-    assert course.residual["before"] == pytest.approx(pieces.residual([], []), abs=0.1 / 131)
-    every = pieces.residual([], [VOLTS, LAGGED], np.ones((2, 3)))
-    assert course.residual["after"] == pytest.approx(every, abs=0.1 / 131)
-    assert course.unscored == 0 and course.offset_dps == {}
-    assert course.bias["online_before"][-1, 1] * 131 == pytest.approx(-20, abs=2)  # it learns
-    given = {"online": lambda frames: np.full((len(frames), 3), 256 * 131)}
-    other = m.course(lambda *a: None, given)
-    assert other.bias["online"] == pytest.approx(np.ones((BLOCKS, 3)))
-    assert "online_before" not in other.residual
-
-
-def test_what_motion_showed_is_beside_all_effects_alone(by_pieces):
-    pieces, chosen = by_pieces
-    more = [Slot(Term("rate_x", -100.0, 100.0), (0.01, 0.0, 0.0), "scale-factor")]
-    m = courses.PieceRuns(pieces, chosen, more)
-    assert list(m.models) == ["before", "after_1", "after_2", "after"]
-    assert len(m.models["after"][0].slots) == 3 and len(m.models["after_2"][0].slots) == 2
-    none = courses.PieceRuns(pieces, chosen.first(0), [])
-    assert list(none.models) == ["before"]
-    alone = courses.PieceRuns(pieces, chosen.first(0), more)
-    assert list(alone.models) == ["before", "after"]
 
 
 def test_a_stretch_behind_a_step_is_judged_about_its_own_mean(power_on):

@@ -7,8 +7,7 @@ import pytest
 from scipy.stats import chi2
 from zerorate_tools.loop.fit import shrunk as shrinking
 from zerorate_tools.loop.fit.common_cause import coherence, turned_axes
-from zerorate_tools.loop.fit.free_curve import parts
-from zerorate_tools.loop.fit.left_out import gains, of_plays, precision_of
+from zerorate_tools.loop.fit.left_out import gains, of_plays
 from zerorate_tools.loop.fit.regression import Regression
 from zerorate_tools.model.term import Term, play
 
@@ -36,24 +35,6 @@ def test_a_session_left_out_is_predicted_by_the_others_alone(regression, with_ga
 
     expected = [0.5 * (lost(s, [A]) - lost(s, [A, B])) for s in range(3)]
     assert gains(regression, [A], [B]) == pytest.approx(expected, rel=1e-4, abs=1e-7)
-
-
-def test_what_is_known_of_coefficients_before_a_session_left_out(regression):
-    def known(terms, own):
-        base = regression.fit(terms).base
-        told = precision_of(regression, regression.cross_products(terms), base, terms, own)
-        return base, told
-
-    base, told = known([B, A, Term("c", power=2)], slice(1, 3))
-    size = np.sqrt((base.fitted[:, 1:3] ** 2).mean(axis=0))
-    assert told[:, 1:3] == pytest.approx(base.variance[:, None] / size**2)
-    assert (told[:, 0] == 0).all() and told.shape == base.fitted.shape
-    plays = [B, A, *(replace(A, memory="play", width=w) for w in (1.0, 2.0))]
-    _, told = known(plays, slice(1, 2))
-    assert (told[:, 1:4] > 0).all() and np.ptp(told[:, 2]) == 0
-    curve = [B, *parts(Term("a", -5.0, 5.0))]
-    _, told = known(curve, slice(1, len(curve)))
-    assert (told[:, 0] == 0).all() and np.ptp(told[0, 1 : len(curve)]) == 0
 
 
 PLAYS = {

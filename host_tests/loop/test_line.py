@@ -73,20 +73,6 @@ def test_play_operators_are_as_large_as_white_noise_lets_them_be(sessions):
     assert (np.abs(told[1:]).sum(axis=0) < np.abs(free[1:]).sum(axis=0)).all()
 
 
-@pytest.mark.parametrize(
-    "change",
-    [
-        *({"source": "a"}, {"lo": -np.inf}, {"power": 2}, {"memory": "play"}, {"second": "a"}),
-        *({"lag_mode": "lag", "lag_s": 9.0}, {"knot": 1.0}, {"delay_s": 1.0}, {"decay_s": 1.0}),
-    ],
-)
-def test_only_the_plain_line_over_temperature_is_the_slope(change):
-    assert line.is_slope(TEMP)
-    assert not line.is_slope(replace(TEMP, **change))
-    assert line.less_slope((LINE,), [A, TEMP]) == ()
-    assert line.less_slope((LINE,), [A, replace(TEMP, **change)]) == (LINE,)
-
-
 def test_the_line_is_applied_where_no_slope_is():
     one = line.with_line([LINE, LINE], [A, TEMP], np.array([[1, 1, 1], [0, 1, 0.0]]))
     assert one.tolist() == [[1, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 0]]

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from zerorate_tools.loop.motion import by_windows, heading, scales_and_timing, windows
+from zerorate_tools.loop.motion import by_windows, scales_and_timing
 from zerorate_tools.loop.motion.clock import evenly
 from zerorate_tools.loop.motion.device import DifferentDevices, Shown, check_one_device
 from zerorate_tools.loop.motion.heading import heading_lost
@@ -166,33 +166,6 @@ def test_an_attitude_that_is_the_inverse_is_refused_with_the_words_that_mend_it(
     ):
         check_axes(moving_of(written(tmp_path, inverse, seen=True)))
     check_axes(moving_of(written(tmp_path, seen=True)))
-
-
-def test_windows_are_whole_and_move_and_parts_have_their_own_rests(tmp_path):
-    moving = moving_of(written(tmp_path))
-    assert [s.start for s in moving.spans(10.0)] == [*range(0, 1001, 125)]
-    assert all(s.stop - s.start == 500 for s in moving.spans(10.0)) and moving.spans(0.16) == []
-    for gaps, spans in ((3.9, 9), (5.1, 5)):  # more than five samples apart is a gap
-        late_s = 0.02 * gaps * (np.arange(1500) > 700)
-        assert len(replace(moving, at_s=moving.at_s + late_s).spans(10.0)) == spans
-    railed = replace(moving, usable=np.arange(1500) != 1499)
-    assert [s.start for s in railed.spans(10.0)] == [*range(0, 876, 125)]
-    slow = replace(moving, rate=moving.rate * 1e-3)
-    assert slow.spans(10.0) == [] and windows.rows_of(slow, 10.0, None, None) is None
-    rests = np.column_stack(
-        [[moving.at_s[499], moving.at_s[500], moving.at_s[999], 14.0], np.eye(4)[:, :3]]
-    )
-    part = replace(moving, rests=rests).part(slice(500, 1000))
-    assert part.rests[:, 0].tolist() == rests[1:3, 0].tolist() and len(part.rate) == 500
-
-
-@pytest.mark.parametrize(("without", "with_it", "counts"), [(400, 420, False), (1, 420, True)])
-def test_a_heading_that_is_far_off_anyway_hardly_counts_but_one_that_gets_so(
-    without, with_it, counts
-):
-    squares = np.array([[1.0] * 9 + [without], [0.25] * 9 + [with_it]])
-    weight = heading._weights(squares)
-    assert bool(weight[-1] > 0.5 * weight[0]) is counts
 
 
 @pytest.mark.parametrize(

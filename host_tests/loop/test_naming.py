@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from zerorate_tools.loop.fit.free_curve import parts
 from zerorate_tools.loop.fit.regression import Regression
 from zerorate_tools.loop.read.earth import Earth
 from zerorate_tools.loop.search import naming
@@ -17,35 +16,6 @@ from .selections import candidate, found
 LAGGED = Term("a", lag_s=0.1, lag_mode="lag")
 LATE = candidate(LAGGED, kind="channel-lag", family="generic")
 SHAKEN, SUPPLIED = candidate(A), candidate(B, kind="supply-voltage")
-
-
-@pytest.mark.parametrize(
-    ("kind", "lag_s", "name", "mode"),
-    [
-        ("thermal-rate", 50.0, "thermal-rate", "rate"),
-        ("thermal-rate", 50.1, "thermal-lag", "difference"),
-        ("thermal-lag", 40.0, "thermal-rate", "rate"),
-        ("thermal-lag", 400.0, "thermal-lag", "difference"),
-    ],
-)
-def test_a_rate_and_a_lag_are_named_by_their_seconds(kind, lag_s, name, mode):
-    one = candidate(Term("temp", lag_s=lag_s, lag_mode="rate"), kind=kind)
-    named = naming.named(one, np.ones((1, 3)))
-    assert named.kind == name and named.terms[0].lag_mode == mode
-
-
-@pytest.mark.parametrize(
-    ("diagonal", "name"),  # nine tenths of the squares are those of 4.24, a tenth of 0.471
-    [
-        *((-4.3, "scale-factor"), (4.2, "scale-factor+cross-axis")),
-        *((-0.48, "scale-factor+cross-axis"), (0.46, "cross-axis")),
-    ],
-)
-def test_a_matrix_is_named_by_where_most_of_it_is(diagonal, name):
-    rates = candidate(*(Term(f"rate_{a}") for a in "xyz"), kind="rate-scale")
-    aside = np.array([[0, 1, -1], [-1, 0, 1], [1, -1, 0]])
-    assert naming.named(rates, diagonal * np.eye(3) + aside).kind == name
-    assert naming.named(SHAKEN, np.ones((1, 3))) is SHAKEN
 
 
 @pytest.fixture
@@ -72,13 +42,6 @@ def test_groups_alike_share_the_posterior_by_the_levels_of_their_families(regres
     assert again[SHAKEN] - again[twin] == pytest.approx(np.log(25), abs=0.1)
 
 
-def test_a_curve_that_was_drawn_pays_for_its_form():
-    curve = Term("a", -4.0, 4.0)
-    drawn = candidate(replace(curve, table=tuple(np.linspace(-1, 1, 9) ** 3)))
-    assert naming._coefficients(drawn) == 3 + len(parts(curve)) - 1
-    assert naming._coefficients(SHAKEN) == 3
-
-
 def test_the_likeliest_is_named_with_what_else_it_may_be(regression):
     twin = candidate(replace(A, centre=1.0), kind="channel", family="generic")
     pool = [SHAKEN, SUPPLIED]
@@ -97,12 +60,6 @@ def test_the_likeliest_is_named_with_what_else_it_may_be(regression):
     assert set(kept.rivals) == {"other", "vibration"}
     slope = found(Term("temp", 10.0, 40.0), kind="temperature-polynomial")
     assert named(slope) == "temperature-polynomial"
-
-
-def test_chances_are_those_of_the_nats_and_the_least_are_not_told():
-    shaken = found(A, rivals={"b": 1.0, "c": -5.0})
-    assert list(shaken.probabilities) == ["b", "vibration"] and shaken.confounded_with == ["b"]
-    assert shaken.probabilities["b"] == pytest.approx(np.e / (1 + np.e + np.exp(-5)))
 
 
 @pytest.mark.parametrize(

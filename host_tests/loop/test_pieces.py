@@ -50,13 +50,6 @@ def test_a_piece_is_short_where_temperature_runs_fast():
     assert np.diff([*begins(single.fold_of(alone(temp=leaps))), 400]).min() >= 3
 
 
-def test_a_block_without_a_rate_goes_with_its_neighbour():
-    session = in_time(100)
-    session.rate_dps[40:43], session.rate_dps[97:] = np.nan, np.nan
-    fold = single.fold_of(session)
-    assert fold[40] in (fold[39], fold[43]) and fold[98] == fold[96]
-
-
 @pytest.mark.parametrize(
     ("degc", "passes"),
     [
@@ -128,40 +121,6 @@ def test_what_is_fitted_beside_a_recording_is_fitted_with_it(judged):
     _, told = single.PiecesByLine(both[0], both[1:]).fitted_to(both[0], [LINE], [])
     assert told == pytest.approx(line.ordinary([LINE], both))
     assert judged.fitted_to(both[0], [], [])[0] == []
-
-
-def test_a_piece_counts_as_a_block_in_a_turn_s_nats(judged):
-    before, after = judged.residual([LINE], []) ** 2, judged.residual([LINE], [A]) ** 2
-    expected = []
-    for own in (judged.fold == k for k in range(10)):
-        falls = np.log(before[own].sum(axis=0) / after[own].sum(axis=0))
-        expected.append(0.5 * 20 / 200 * own.sum() * falls.sum())
-    assert judged([LINE], [], [A]) == pytest.approx(expected)
-
-
-@pytest.mark.parametrize(
-    ("before", "after", "blocks", "nats"),
-    [
-        ((4.0, 0.0, 1.0), (1.0, 1.0, np.inf), 10, 0.5 * 3 * np.log(4)),
-        ((1.0, 1.0, 1.0), (0.0, 0.0, 0.0), 10, 0.0),
-        ((1.0, 1.0, 1.0), (0.5, 0.5, 0.5), 0, 0.0),
-    ],
-)
-def test_an_axis_without_a_square_before_or_after_has_no_nats(before, after, blocks, nats):
-    told = single.nats(np.array([before]), np.array([after]), [blocks])
-    assert told == pytest.approx([nats])
-
-
-@pytest.mark.parametrize(
-    ("change", "knows_nothing"),
-    [
-        *(({}, True), ({"lag_mode": "lag"}, False), ({"memory": "peak"}, False)),
-        *(({"delay_s": 1.0}, False), ({"decay_s": 1.0}, False), ({"source": "time"}, False)),
-        *(({"second": "time"}, False), ({"second": "a"}, True)),
-    ],
-)
-def test_what_knows_nothing_of_before(change, knows_nothing):
-    assert single.is_instant(replace(LINE, **change)) is knows_nothing
 
 
 @pytest.mark.parametrize(

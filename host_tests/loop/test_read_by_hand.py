@@ -1,14 +1,13 @@
 """How recordings are read, part by part: at the edges, in batches, and as a plain computation."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
-from zerorate_tools.loop.read import blocks, lines, sessions
+from zerorate_tools.loop.read import lines, sessions
 from zerorate_tools.loop.read.bad_readings import BadReadings
 from zerorate_tools.loop.read.reference import Reference, attitude_names, declared
 from zerorate_tools.loop.read.sessions import Session, block_basis
@@ -154,38 +153,6 @@ def test_segments_are_those_of_the_whole_and_count_where_all_of_them_rests(cuts)
     for hz, left in ((44.0, 6), (42.0, None)):  # too short for that rate
         seen = segments.at_rest(np.ones_like(still), hz)
         assert (seen and seen.averages) == left
-
-
-def ticks(n, tick_s):
-    return SimpleNamespace(count=np.ones(n), tick_s=tick_s)
-
-
-@pytest.mark.parametrize(
-    ("longest", "tick_s", "alone", "block_s"),
-    [
-        *((3000, 1.0, False, 20.0), (2850, 1.0, False, 19.0), (150, 1.0, False, 1.0)),
-        *((30_000, 1.0, False, 20.0), (31_500, 1.0, False, 21.0), (5000, 1.0, True, 20.0)),
-        *((5250, 1.0, True, 21.0), (100, 15.0, False, 15.0), (2000, 15.0, False, 30.0)),
-    ],
-)
-def test_blocks_are_of_whole_ticks_and_neither_too_few_nor_too_many(
-    longest, tick_s, alone, block_s
-):
-    every = [ticks(longest, tick_s), *([] if alone else [ticks(50, tick_s)])]
-    assert blocks.block_seconds(every) == pytest.approx(block_s)
-
-
-@pytest.mark.parametrize(
-    ("missing", "few"),
-    [
-        *(([], True), ([5, 6, 7, 8, 9], True), ([5, 6, 7, 8, 9, 10], False)),
-        *(([*range(0, 20, 2)], True), ([*range(0, 22, 2)], False)),
-    ],
-)
-def test_five_blocks_in_a_row_and_a_tenth_of_all_may_be_bridged(missing, few):
-    available = np.ones(100, bool)
-    available[missing] = False
-    assert blocks.can_be_bridged(available) is few
 
 
 def test_what_remembers_is_told_once_for_the_sources_of_a_session():

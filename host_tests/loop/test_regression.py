@@ -79,20 +79,6 @@ def test_a_short_gap_is_a_straight_line_in_every_column():
     assert whitener(bridged.available) is w
 
 
-def test_products_of_some_sessions_and_of_sums_of_nuisances(regression):
-    g = regression.cross_products([A, B, C], [(D,)])
-    some = g.of(np.array([2, 0]))
-    assert (some.yy == g.yy[[2, 0]]).all() and some.count.tolist() == g.count[[2, 0]].tolist()
-    sums = np.array([[1.0], [2.0]])
-    by = g.mapped(1, sums)
-    whole = np.array([[1.0, 0.0], [0.0, 1.0], [0.0, 2.0]])
-    assert by.zz == pytest.approx(whole.T @ g.zz @ whole)
-    assert by.zy == pytest.approx(whole.T @ g.zy)
-    assert by.xz == pytest.approx(g.xz @ whole) and (by.xx == g.xx).all()
-    first = g.mapped(0, np.array([[1.0], [1.0]]))
-    assert first.zz.shape[-1] == 2 and first.zz[..., 1, 1] == pytest.approx(g.zz[..., 2, 2])
-
-
 def test_whitened_columns_that_are_known_are_given_again_and_no_more_are_kept_than_may_be():
     there = np.ones(20, bool)
     there[3:15] = False
@@ -150,16 +136,6 @@ def test_what_is_left_is_what_the_columns_do_not_hold(regression, with_gap):
         )
         own = regression.whiteners[i].prepare(np.nan_to_num(s.rate_dps) - model)
         assert left[i] == pytest.approx(own)
-
-
-def test_weights_that_are_told_are_shrunk_by_their_precision(with_gap):
-    two = Regression(with_gap[:2])
-    plain = two.cross_products([B])
-    with two.shrinking({B: 6.0}):
-        more = two.cross_products([B])
-        tried = two.cross_products([A], [(B,), (C,)])
-    assert more.zz - plain.zz == pytest.approx(np.full_like(more.zz, 3.0))
-    assert tried.xx[:, :, 0] == pytest.approx(more.zz)
 
 
 @pytest.mark.parametrize(("times", "told"), [(1.16, 1.0), (1.23, 1.23**0.5)])

@@ -1,7 +1,6 @@
 """What a search comes to: its effects refined, with less in it, and in the board's slots."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,12 +9,12 @@ from zerorate_tools.loop.fit.free_curve import draw, parts
 from zerorate_tools.loop.fit.regression import Regression
 from zerorate_tools.loop.search import refine
 from zerorate_tools.loop.search.examine import cancels
-from zerorate_tools.loop.search.selection import Selection, fits_in_slots
+from zerorate_tools.loop.search.selection import fits_in_slots
 from zerorate_tools.model.term import Term
 
 from . import dense
 from .dense import A, B
-from .selections import candidate, found
+from .selections import candidate
 
 LAG = Term("temp", lag_s=9.0, lag_mode="lag")
 PLAY = Term("temp", memory="play", width=1.0)
@@ -41,24 +40,6 @@ def test_what_the_board_has_room_for(terms, taken, fits):
     assert fits_in_slots(terms, taken) is fits
 
 
-def test_a_selection_with_less_in_it():
-    slope = Term("temp", 10.0, 40.0, 25.0)
-    both, line = [found(A, B), found(slope)], (Term("temp"),)
-    whole = Selection(both, [], 0, None, line, (), [], {})
-    assert whole.terms == [A, B, slope] and whole.straight == ()
-    assert whole.first(1).straight == line and whole.first(1).found == both[:1]
-    assert whole.without(0).found == both[1:] and whole.without(1).found == both[:1]
-    less = whole.without_axes(0, (True, False, False), "worse")
-    assert less.found[0].axes == (False, True, True) and less.found[1] is both[1]
-    assert less.applied.tolist() == [[0, 1, 1], [0, 1, 1], [1, 1, 1]]
-    gone = less.without_axes(0, (False, True, True), "worse")
-    assert gone.found == both[1:] and gone.withdrawn == [("vibration", "worse")]
-    assert both[0].axes == (True, True, True) and whole.first(0).applied.shape == (0, 3)
-    alone = replace(whole, alone=True)
-    assert alone.stands_alone and not replace(alone, judged_again=True).stands_alone
-    assert not whole.stands_alone
-
-
 def test_where_any_curve_will_do_it_is_told_by_the_recordings():
     regression, same = Regression([dense.made(seed, 100) for seed in (1, 2)]), candidate(A)
     assert refine.drawn(regression, [], same) is same
@@ -66,30 +47,6 @@ def test_where_any_curve_will_do_it_is_told_by_the_recordings():
     for some in (candidate(*parts(curve), kind="x"), candidate(replace(curve, table=(0.5,) * 9))):
         told = refine.drawn(regression, [B], some)
         assert told.terms == (draw(regression, [B], some.terms[0])[0],) and told.kind == some.kind
-
-
-def refined(term, name, sign):
-    """Where a field of a term ends up that gains the more the larger it is, or the smaller."""
-    told = SimpleNamespace(
-        gains=lambda terms, trial: np.array([[sign * getattr(trial[0][0], name)]]),
-        forget=lambda term: None,
-    )
-    best = refine.refined(told, [], candidate(term, refine=(name,)))
-    return getattr(best.terms[0], name)
-
-
-@pytest.mark.parametrize(
-    ("name", "least", "most"),
-    [
-        *(("lag_s", 8.0, 7200.0), ("delay_s", 1.0, 1200.0), ("decay_s", 40.0, 14400.0)),
-        ("width", 0.3, 30.0),
-    ],
-)
-def test_what_is_refined_stays_within_what_the_firmware_and_a_recording_can_hold(name, least, most):
-    for sign, start, end in ((-1, 1.5 * least, least), (1, most / 1.5, most)):
-        told = refined(Term("a", **{name: start}), name, sign)
-        assert told == pytest.approx(end, rel=0.03)
-        assert least * 0.999 <= told <= most * 1.001
 
 
 @pytest.fixture

@@ -13,7 +13,6 @@ from . import dense
 from .selections import step
 
 BLOCKS, TICKS = 60, np.arange(120)
-COLD = Term("temp", centre=20.0)
 
 
 @pytest.mark.parametrize(
@@ -58,24 +57,6 @@ def in_ticks(known, jump, **sources):
 
 KNOWN, GAP = TICKS >= 0, (TICKS < 60) | (TICKS > 66)
 STEP = step(6, (1.0, -1.0, 0.0), (0.1, 0.1, 1.0))
-
-
-@pytest.mark.parametrize(
-    ("known", "jump", "tick"),
-    [
-        (KNOWN, 63, 63.0),
-        *((KNOWN, 33, 41.0), (KNOWN, 80, 79.0)),  # two blocks off at most
-        (GAP, 63, 63.5),  # in the middle of what is not known
-        *((TICKS < 50, 99, 49.5), (TICKS > 59, 0, 60.5)),
-    ],
-)
-def test_a_step_is_in_the_middle_of_the_ticks_where_it_may_have_been(known, jump, tick):
-    other = np.outer(TICKS >= 30, [0.0, 5.0, 9.0])
-    session = in_ticks(known, jump)
-    session.ticks_dps += other
-    told = steps_first._timed(session, STEP, other)
-    assert (told.at_s, told.said) == (2.0 * tick, "")
-    assert steps_first._timed(replace(session, ticks_dps=None), STEP, other) is STEP
 
 
 def test_of_several_steps_each_is_timed_without_the_others_and_all_are_taken_out():

@@ -70,14 +70,6 @@ def test_a_step_is_looked_for_away_from_either_end(blocks, places):
     assert not places or (ground[0], ground[-1]) == (8, blocks - 8)
 
 
-@pytest.mark.parametrize(("ramp", "sharper"), [(0.0, (20.0, 1e9)), (12.0, (-1e9, -10.0))])
-def test_a_step_explains_more_than_a_ramp_and_a_ramp_more_than_a_step(ramp, sharper):
-    made = [noise(4), noise(5)]
-    change = np.clip((np.arange(60) + 0.5 - 32.0) / max(ramp, 1.0) + 0.5 * bool(ramp), 0, 1)
-    made[1].rate_dps[:] += np.outer(change, [9.0, -9.0, 9.0])
-    assert sharper[0] < step_places.beyond_ramps(Regression(made), [A], 1, 32.0) < sharper[1]
-
-
 # --- steps ---
 
 
