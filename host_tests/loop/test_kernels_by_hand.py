@@ -1,6 +1,7 @@
 """Pieces of one recording judged by the firmware itself, beside devices run one by one."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from zerorate_tools.loop.verify import power_on as module
 from zerorate_tools.loop.verify.by_kernels import PiecesByKernels
 from zerorate_tools.loop.verify.firmware import Firmware
 from zerorate_tools.model.term import Term
+from zerorate_tools.replay.samples import frames_in_batches
 
 from .power_ons import MPU, PER, powered_on, with_volts
 
@@ -85,7 +87,7 @@ def test_what_the_firmware_cannot_hold_has_no_error_and_gains_nothing(power_on):
 @pytest.mark.parametrize("terms", [[], [VOLTS], [LAGGED]])
 def test_a_recording_read_in_parts_gives_what_it_gives_at_once(power_on, monkeypatch, terms):
     whole = PiecesByKernels(power_on, MPU).residual([], terms)
-    monkeypatch.setattr(module, "_ROWS", 170)
+    monkeypatch.setattr(module, "frames_in_batches", partial(frames_in_batches, rows=170))
     parts = PiecesByKernels(power_on, MPU).residual([], terms)
     assert parts == pytest.approx(whole, abs=0.3 / 131)
 

@@ -47,7 +47,7 @@ PLAYS = {
 ALONE = [(size,) for size in dense.SIZES]
 
 
-WITH_SQUARES = [(size, size * of) for size in dense.SIZES for of in (1e-3, 0.1, 0.3, 1.0)]
+WITH_SQUARES = [(size, size * of) for size in dense.SIZES for of in (1e-3, 0.1, 10**-0.5, 1.0)]
 
 
 def played(session):

@@ -16,9 +16,6 @@ from scipy.linalg import block_diag, solve_triangular
 from ..read.blocks import can_be_bridged
 from . import noise
 
-#: Columns above which they are tried once, as surrogates are, and not kept whitened; what is kept.
-_FEW, _MOST_KEPT_BYTES = 64, 100_000_000
-
 
 class Whitener:
     """The spectra of one session's noise, and its columns' cross products under each of them."""
@@ -72,7 +69,6 @@ class GappyWhitener(Whitener):
             self.logdet[g] = 2 * np.log(np.diag(factor)).sum()
             self.whitening[g] = solve_triangular(factor, unit, lower=True, check_finite=False)
         self._known: dict[bytes, np.ndarray] = {}
-        self._most = _MOST_KEPT_BYTES // (8 * len(self.spectrum) * max(self.coefficients, 1))
 
     def prepare(self, columns: np.ndarray) -> np.ndarray:
         return self._keep.T @ columns[self.available]
@@ -85,16 +81,15 @@ class GappyWhitener(Whitener):
         shape = len(self.whitening), tried.shape[1]
         cross = np.empty((*shape, fixed.shape[1]))
         groups = np.empty((shape[0], shape[1] // size, size, size))
-        known = self._whitened(tried) if tried.shape[1] <= _FEW else None
         for g, w in enumerate(self.whitening):
-            own = (w @ tried).T if known is None else known[g]
+            own = (w @ tried).T
             cross[g] = own @ white[g].T
             each = own.reshape(-1, size, own.shape[1])
             groups[g] = each @ each.transpose(0, 2, 1)
         return both, cross, groups
 
     def _whitened(self, columns: np.ndarray) -> np.ndarray:
-        """(shapes, K, N) of (N, K) columns; the same ones are asked for again and again."""
+        """(shapes, K, N) of (N, K) columns, of which most are those of the call before."""
         keys = [c.tobytes() for c in columns.T]
         new = [i for i, key in enumerate(keys) if key not in self._known]
         if new:
@@ -104,8 +99,7 @@ class GappyWhitener(Whitener):
         out = np.empty((len(self.whitening), *columns.shape[::-1]))
         for i, key in enumerate(keys):
             out[:, i] = self._known[key]
-        while len(self._known) > self._most:
-            del self._known[next(iter(self._known))]
+        self._known = {key: self._known[key] for key in keys}
         return out
 
 

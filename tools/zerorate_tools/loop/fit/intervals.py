@@ -6,19 +6,18 @@ import numpy as np
 
 from .surrogates import COUNT
 
-_LENGTH = 15
-
 
 def block_bootstrap(
     parts: list[np.ndarray], statistic: Callable[[np.ndarray], np.ndarray]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """2.5 % and 97.5 % points of a statistic of (n, ...) rows drawn in runs (Kuensch 1989).
+    """2.5 % and 97.5 % points of a statistic of (n, ...) rows drawn in runs of the root of n
+    (Kuensch 1989): as many as each is long, where the noise's memory is unknown.
 
     parts: one array a session, rows in time order, NaN rows dropped; statistic: of the rows drawn.
     """
     rng = np.random.default_rng(0)
     rows = np.vstack([p[np.isfinite(p).all(axis=1)] for p in parts])
-    length = max(1, min(_LENGTH, len(rows) // 3))
+    length = round(len(rows) ** 0.5)
     runs = -(-len(rows) // length)
     values = []
     for _ in range(COUNT):

@@ -19,10 +19,9 @@ from .likelihood import TINY
 from .noise import LOG_PRIOR
 from .regression import Regression
 
-#: Variance of what all operators, or waves, add, of that of a block's white noise; and of it, that
-#: of squares.
+#: Variance of what all operators, or waves, add, of that of a block's white noise; and of it, up to
+#: all, that of squares.
 SIZES = np.r_[1e-3, 10.0 ** np.arange(-1.0, 4.1, 0.5)]
-_OF_SQUARES = (1e-3, 0.1, 0.3, 1.0)
 
 
 def has_play_operators(terms: Terms) -> bool:
@@ -53,7 +52,7 @@ def shrink(
     groups = _groups(terms, axes[0].zz.shape[-1], own)
     spans = [axes[0].spans(own, np.any(groups, axis=0)) for own in groups]
     precisions, told, fitted = [], [], []
-    for sizes in product(SIZES, *[_OF_SQUARES] * (len(groups) - 1)):
+    for sizes in product(SIZES, *[SIZES[SIZES <= 1.0]] * (len(groups) - 1)):
         shares = np.cumprod(sizes)
         parts = [own * span / share for own, span, share in zip(groups, spans, shares)]
         precision = np.sum([np.zeros(axes[0].zz.shape[-1]), *parts], axis=0)

@@ -82,7 +82,7 @@ def ranges(sessions: list[Session]) -> dict[str, Span]:
     for name in [*common_sources(sessions), "time"]:
         slow = name in ("temp", "time")
         values = np.concatenate([_known(s, name, slow) for s in sessions])
-        few = 0 if slow else min(int(_FEW + _FEW_SHARE * len(values)), (len(values) - 1) // 2)
+        few = 0 if slow else min(int(np.ceil(_FEW * len(values))), (len(values) - 1) // 2)
         ends = np.partition(values, (few, last := len(values) - 1 - few))
         out[name] = (float(ends[few]), float(ends[last]), float(values.mean()))
     return out
@@ -105,8 +105,8 @@ def is_supply(name: str) -> bool:
     return any(part in name.lower() for part in SUPPLY_NAMES)
 
 
-#: Blocks beyond either limit of a source's range, and the further share of all blocks.
-_FEW, _FEW_SHARE = 1, 0.01
+#: Share of the blocks beyond either limit of a source's range.
+_FEW = 0.01
 
 #: Lags in s of all parts that may be late, each three times the last: between two nothing is lost.
 _LAGS_S = (5.0, 15.0, 45.0, 135.0, 405.0, 1215.0)

@@ -17,9 +17,6 @@ from ..fit.regression import OUTLIER, Regression
 from ..read.sessions import Session
 from .steps import MOST_PER_SESSION, NEAR, Step, standing, steps_and_lags
 
-#: Ticks around a moment in which the accelerometer is looked at.
-_MOMENT = 10
-
 
 def remove_steps(sessions: Sequence[Session]) -> list[Session]:
     """Return the sessions without their steps, which they name."""
@@ -136,7 +133,8 @@ def _by_accelerometer(session: Session, first: int, last: int) -> tuple[int | No
     change = np.r_[0.0, np.linalg.norm(np.diff(acc, axis=0), axis=1)]
     shaken = np.sqrt(np.maximum(session.sources.get("vib", np.zeros(len(acc))), 0.0))
     seen = np.maximum(change, shaken - np.median(shaken))
-    a, b = max(0, first - _MOMENT), min(len(seen), last + _MOMENT)
+    around = session.ticks_per_block // 2
+    a, b = max(0, first - around), min(len(seen), last + around)
     at = a + int(seen[a:b].argmax())
     if seen[at] < max(DEFAULTS["still_g"], OUTLIER * np.median(seen)):
         return None, ""

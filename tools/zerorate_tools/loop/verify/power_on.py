@@ -14,7 +14,6 @@ from .firmware import Firmware, rows
 
 #: Blocks after the first still minute in which the firmware may go on making up its mind.
 _MORE_BLOCKS = 15
-_ROWS = 131_072
 
 
 @dataclass(frozen=True)
@@ -34,7 +33,7 @@ class PowerOn:
     def frames(self) -> Iterator[Frames]:
         """All samples, in batches, without the steps of the bias."""
         opened = open_recording(self.path, keep_gaps=True)
-        batches, level = frames_in_batches(opened, _ROWS, self.channels), self.session.level_dps
+        batches, level = frames_in_batches(opened, channels=self.channels), self.session.level_dps
         return batches if level is None else (self._less(f, level * self.lsb) for f in batches)
 
     def _less(self, frames: Frames, level: np.ndarray) -> Frames:
