@@ -1,12 +1,11 @@
 """The adaptive histogram keeps its promises whatever is added to it."""
 
-import random
 from array import array
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from zerorate import Corrector, Sensor
+from zerorate import Corrector
 from zerorate.rest import histogram
 from zerorate_tools.layout import SETTINGS, STATE
 
@@ -28,8 +27,8 @@ chunks = st.lists(st.tuples(st.one_of(near, far), st.sampled_from([1, 2, 64, 256
 class Histogram:
     """One histogram behind the shared words that the kernels use."""
 
-    def __init__(self, mode, sensor=None, **more):
-        self.c = Corrector(sensor, **{**MODES[mode], **more}).settings
+    def __init__(self, mode):
+        self.c = Corrector(**MODES[mode]).settings
         self.bins = self.c[SETTINGS.BINS]
         self.sum = STATE.FIT_WEIGHTS  # behind what kernels keep for themselves
         self.h = self.sum + 2
@@ -57,10 +56,6 @@ class Histogram:
     def widths(self):
         return [b - a for a, b in zip(self.edges, self.edges[1:])]
 
-    @property
-    def read_out(self):
-        return histogram.read_out_q8(self.s, self.h, self.bins) / 256
-
 
 def sound(made):
     """Assert what always holds."""
@@ -86,26 +81,3 @@ def test_a_reading_outside_is_ignored_by_option(reading):
     assert made.add(reading) == 0
     made.s[made.sum], made.s[made.sum + 1] = 0, 0
     assert bytes(made.s) == before
-
-
-def test_the_bias_is_the_mean_of_the_bin_with_most_readings_for_its_width():
-    made = Histogram("document")
-    for k, (edge, count, total) in enumerate(
-        [(-800, 90, -40000), (-100, 40, -2000), (0, 30, 475), (20, 99, 9900), (800, 0, 0)]
-    ):
-        made.s[made.h + k] = edge << 14 | count
-        made.s[made.h + made.bins + 1 + k] = total
-    for k in range(5, made.bins + 1):
-        made.s[made.h + k] = (1000 + k) << 14
-    assert made.read_out == pytest.approx(475 / 30, abs=1 / 256)  # 30 / 20 LSB is most
-
-
-@pytest.mark.parametrize("lsb_per_dps", [131.0, 65.5, 32.8, 16.4])
-@pytest.mark.parametrize("mean_lsb", [0.0, 0.3, 0.5, -3.02])
-def test_what_was_learned_is_kept_in_every_range(lsb_per_dps, mean_lsb):
-    sensor = Sensor(gyro_lsb_per_dps=lsb_per_dps)
-    made, rng = Histogram("default", sensor), random.Random(1)
-    for _ in range(3000):
-        made.add(round(rng.gauss(mean_lsb, 0.06 * lsb_per_dps)))
-    assert sum(made.counts) > 1500
-    assert made.read_out == pytest.approx(mean_lsb, abs=0.3)

@@ -127,23 +127,6 @@ def test_models_are_none_those_of_the_first_effects_and_the_whole_one(supplied):
     assert [len(m.slots) for m in models[1:]] == [1, 2, 2] and models[-1] is whole
 
 
-def test_columns_of_the_corrected_rows_are_what_was_subtracted(tmp_path):
-    (frames,) = powered_on(tmp_path, with_volts(0, 2)).frames()
-    test = np.arange(40) >= 30
-    biases = {"before": np.full((40, 3), 256), "after": np.arange(120).reshape(40, 3), "after_1": 0}
-    writer = run_kernels.CorrectedWriter(tmp_path / "o.parquet")
-    writer.write("a.csv", frames, test, biases)
-    writer.write("b.csv", frames, ~test, biases)
-    writer.close()
-    table = pq.read_table(tmp_path / "o.parquet").to_pandas()
-    assert table["recording"].tolist() == ["a.csv"] * 40 + ["b.csv"] * 40
-    assert table["split"].tolist()[:40] == ["train"] * 30 + ["test"] * 10
-    assert table["t_us"].tolist() == frames.t_us.tolist() * 2
-    assert (table["bias_before_gx"] == 1).all()
-    assert table["bias_after_gz"].tolist()[:40] == ((np.arange(40) * 3 + 2) / 256).tolist()
-    assert "bias_after_1_gx" not in table and "bias_online_gx" not in table
-
-
 def test_what_the_integers_round_is_the_difference_to_the_same_terms_in_floats(tmp_path):
     columns = with_volts(0, 20)
     columns["volt"] = np.rint(5000 + 300 * np.sin(np.arange(400) / 40)).astype(np.int32)

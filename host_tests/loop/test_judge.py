@@ -181,15 +181,6 @@ def test_an_effect_goes_from_the_axes_on_which_the_error_grows(three, after, alo
     assert set(asked) <= {0} and [f.axes for f in three.found] == [ALL] * 3
 
 
-@pytest.mark.parametrize(("before", "gone"), [([], 0), ([[4, 4, 4]], 1)])
-def test_what_was_taken_from_every_axis_is_withdrawn_with_both_errors(three, before, gone):
-    every = [*before, [1, 1, 1], [2, 2, 2], [2, 2, 2], [2, 2, 2]]
-    less = prune.without_harmful(three, residuals(*every[:4]), never)
-    assert less.found == [f for i, f in enumerate(three.found) if i != gone]
-    [(name, why)] = less.withdrawn
-    assert name == "vibration" and "grows: with it 2e+03 mdps, without 1e+03" in why
-
-
 @pytest.mark.parametrize(
     ("better", "stays"),
     [
@@ -209,9 +200,3 @@ def test_an_effect_that_helps_no_more_pieces_than_chance_is_withdrawn(three, bet
     for name, why in less.withdrawn:
         assert not less.found and name == "vibration"
         assert f"{sum(b > 0 for b in better)} of {len(better)} pieces" in why
-
-
-def test_one_recording_alone_has_nothing_held_out_to_speak_against_it():
-    made = [dense.made(1, 40)]
-    selection = selected(made, found(A), alone=True)
-    assert prune.prune_by_holdout(selection, made)[0] is selection

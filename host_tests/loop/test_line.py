@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from zerorate_tools.loop.fit import line
-from zerorate_tools.loop.fit.free_curve import draw, is_curve, of_any_form, parts
+from zerorate_tools.loop.fit.free_curve import draw
 from zerorate_tools.loop.fit.regression import Regression
 from zerorate_tools.loop.fit.smooth import curve_of, matern
 from zerorate_tools.loop.read.sessions import block_basis
@@ -98,15 +98,6 @@ def test_what_is_deployed_is_the_fit_and_beside_it_the_line_as_the_firmware_lear
     assert told[1, 1] == 0
 
 
-def test_a_recording_alone_is_learned_like_the_line_and_a_slope_has_none_beside_it(sessions):
-    _, _, told = deployed(sessions, [A], alone=True)
-    assert told[1] == pytest.approx(line.ordinary([LINE, A], sessions)[1])
-    fitted, terms, told = deployed(sessions, [TEMP], ())
-    assert terms == [TEMP] and told == pytest.approx(fitted)
-    _, terms, told = deployed(sessions, [], ())
-    assert terms == [] and told.shape == (0, 3)
-
-
 # --- curves of any form ---
 
 
@@ -192,21 +183,3 @@ def test_a_rate_of_nothing_has_no_curve():
     term = Term("a", -4.0, 5.0, 0.0)
     drawn, lost = draw(Regression([still]), [], term)
     assert drawn == term and lost == 0.0
-
-
-def test_parts_carry_nine_tenths_of_what_curves_vary_by_in_ten_or_fewer_forms():
-    several = parts(Term("a", 0.0, 1.0))
-    tables = np.array([t.table for t in several]).T
-    at = np.linspace(-1, 1, 9)
-    waves = np.mean([matern(at, length) for length in dense.LENGTHS], axis=0)
-    centred = np.eye(9) - 1 / 9
-    whole = centred @ (np.outer(at, at) + waves) @ centred
-    most = np.sort(np.linalg.eigvalsh(whole))[::-1]
-    fewest = int(np.searchsorted(np.cumsum(most) / most.sum(), 0.9)) + 1
-    assert tables.shape[1] == fewest
-    assert tables.T @ tables == pytest.approx(np.diag(most[:fewest][::-1]), abs=1e-9)
-    assert whole @ tables == pytest.approx(tables * most[:fewest][::-1], abs=1e-9)
-    points = np.array([t.table for t in of_any_form(several)])
-    assert np.linalg.matrix_rank(np.vstack([points, np.ones(9)])) == 9  # but for an offset
-    assert of_any_form(several[:1]) == several[:1]
-    assert is_curve(several) and not is_curve(several[:1]) and not is_curve([*several, A])

@@ -61,15 +61,3 @@ def test_a_line_is_found_with_its_period_and_amplitude(period_s):
     (line,) = lines(rates)
     assert 1 / line.hz == pytest.approx(period_s, rel=0.06) and line.in_holdout
     assert line.amplitude_dps[0] == pytest.approx(size[0], rel=0.3)
-
-
-def test_a_broad_hump_is_said_once():
-    rng = np.random.default_rng(5)
-    rates = []
-    for _ in range(4):
-        spectrum_of = np.fft.rfft(coloured(rng), axis=0)
-        hz = np.fft.rfftfreq(N, STEP_S)
-        gain = 1 + 40 * np.exp(-(((hz - 0.2) / 0.006) ** 2))
-        rates.append(np.fft.irfft(spectrum_of * gain[:, None], N, axis=0))
-    found = lines(rates)
-    assert len(found) == 1 and found[0].hz == pytest.approx(0.2, abs=0.01)

@@ -4,11 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from zerorate_tools.layout import AXIS
 from zerorate_tools.loop.motion.scales_and_timing import InMotion
 from zerorate_tools.loop.read.earth import Earth
-from zerorate_tools.loop.verify.firmware import Firmware, Refused, rows
-from zerorate_tools.loop.verify.power_on import BlockMeans, ideal_dps, turn_on
+from zerorate_tools.loop.verify.firmware import Firmware, Refused
+from zerorate_tools.loop.verify.power_on import ideal_dps, turn_on
 from zerorate_tools.model import Slot, drafted
 from zerorate_tools.model.term import Term
 from zerorate_tools.replay.engines import CPythonEngine
@@ -50,21 +49,6 @@ def test_steps_are_taken_out_of_the_samples_in_whole_counts(tmp_path):
         assert set(after[:, axis]) <= {np.floor(counts), np.ceil(counts)}
         assert after[:, axis].mean() == pytest.approx(counts, abs=0.02)
     assert (frames.frames[:, :4] == less.frames[:, :4]).all()
-
-
-def test_biases_of_samples_are_gathered_into_means_of_blocks(tmp_path):
-    columns = {n: np.delete(v, [21, 22, 50], axis=0) for n, v in with_volts(blocks=6).items()}
-    short = {"rate_dps": np.ones((5, 3)), "weight": np.ones(5), "tick_weight": np.full(20, 5.0)}
-    p = powered_on(tmp_path, columns, **short)
-    (frames,), means = p.frames(), BlockMeans(p)
-    bias = np.random.default_rng(1).integers(-9000, 9000, (len(frames), 3))
-    for part in np.array_split(np.arange(len(frames)), 4):
-        means.add(rows(frames, part[0], part[-1] + 1), bias[part])
-    at = p.ticks(frames)
-    ticks = np.array([bias[at == tick].mean(axis=0) for tick in range(20)]) / 256 / 131
-    assert means.ticks_dps() == pytest.approx(ticks)
-    assert means.blocks_dps() == pytest.approx(ticks.reshape(5, TICKS, 3).mean(axis=1))
-    assert np.isnan(BlockMeans(p).ticks_dps()).all()
 
 
 def test_what_an_ideal_bias_would_be_has_earth_s_rate_at_the_first_rest_in_it(tmp_path):
@@ -157,17 +141,6 @@ def test_a_device_at_rest_knows_its_offset_and_it_is_what_differs_from_the_learn
     ready.run(frames)
     assert ready.offset_is_known.tolist() == [True] * 3
     assert ready.target_q8 / 256 == pytest.approx([55, -20, -15], abs=2)
-
-
-def test_an_offset_is_put_on_every_axis_and_unknown_where_it_is_suspect():
-    device = Firmware(MPU, None)
-    state = device._corrector.state
-    device.set_offset((1, -2, 3))
-    assert [state[at + AXIS.OFFSET_Q8] for at in device._axes()] == [1, -2, 3]
-    for at, suspect in zip(device._axes(), (-1, 0, 1)):
-        state[at + AXIS.OFFSET_VARIANCE_Q8] = 5
-        state[at + AXIS.SUSPECT] = suspect
-    assert device.offset_is_known.tolist() == [True, True, False]
 
 
 def test_the_compiled_device_and_the_plain_one_learn_the_same_parts(tmp_path):

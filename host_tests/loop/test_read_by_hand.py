@@ -124,14 +124,6 @@ def test_lines_of_every_session_are_found_by_their_size_the_strongest_first():
     )
 
 
-@pytest.mark.parametrize("seed", range(2))
-def test_noise_slopes_and_what_is_beyond_the_spectrum_are_no_lines(seed):
-    walk = np.cumsum(noise(seed), axis=0) * 0.1 + noise(seed + 50)
-    edge = noise(seed) + np.sin(np.pi * np.arange(4096) * 0.98)[:, None]
-    for rate in (walk, edge):
-        assert lines.find([lines.spectrum(rate, 0.1, 8192)], [], 4.0, 0.01) == []
-
-
 @given(st.lists(st.integers(0, 12_000), max_size=4))
 def test_segments_are_those_of_the_whole_and_count_where_all_of_them_rests(cuts):
     n = 6 * lines.SEGMENT + 500

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from zerorate_tools.loop.fit.cross_products import GappyWhitener, cross_products, whitener
 from zerorate_tools.loop.fit.likelihood import session_scale
-from zerorate_tools.loop.fit.regression import Regression, predicted
+from zerorate_tools.loop.fit.regression import Regression
 from zerorate_tools.model.term import Term
 
 from . import dense
@@ -124,18 +124,6 @@ def test_turned_axes_are_turned_back_and_coefficients_are_of_the_sensor(regressi
         assert regression.fit([A, B]).coefficients == pytest.approx(plain)
     assert (regression.axes == turned).all()
     assert regression.y[0] == pytest.approx(regression.whiteners[0].prepare(rate))
-
-
-def test_what_is_left_is_what_the_columns_do_not_hold(regression, with_gap):
-    fit = regression.fit([A, B])
-    left = regression.left([A, B], fit)
-    for i, s in enumerate(with_gap):
-        model = predicted([A, B], fit.coefficients, s)
-        assert model == pytest.approx(
-            np.column_stack([s.sources["a"], s.sources["b"]]) @ fit.coefficients
-        )
-        own = regression.whiteners[i].prepare(np.nan_to_num(s.rate_dps) - model)
-        assert left[i] == pytest.approx(own)
 
 
 @pytest.mark.parametrize(("times", "told"), [(1.16, 1.0), (1.23, 1.23**0.5)])

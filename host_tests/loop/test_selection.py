@@ -5,16 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.optimize import brentq
-from zerorate_tools.loop.fit.free_curve import draw, parts
-from zerorate_tools.loop.fit.regression import Regression
-from zerorate_tools.loop.search import refine
 from zerorate_tools.loop.search.examine import cancels
 from zerorate_tools.loop.search.selection import fits_in_slots
 from zerorate_tools.model.term import Term
 
 from . import dense
 from .dense import A, B
-from .selections import candidate
 
 LAG = Term("temp", lag_s=9.0, lag_mode="lag")
 PLAY = Term("temp", memory="play", width=1.0)
@@ -38,15 +34,6 @@ PRODUCTS = [Term(f"c{k}", second=f"d{k}") for k in range(4)]
 )
 def test_what_the_board_has_room_for(terms, taken, fits):
     assert fits_in_slots(terms, taken) is fits
-
-
-def test_where_any_curve_will_do_it_is_told_by_the_recordings():
-    regression, same = Regression([dense.made(seed, 100) for seed in (1, 2)]), candidate(A)
-    assert refine.drawn(regression, [], same) is same
-    curve = Term("a", -4.0, 4.0)
-    for some in (candidate(*parts(curve), kind="x"), candidate(replace(curve, table=(0.5,) * 9))):
-        told = refine.drawn(regression, [B], some)
-        assert told.terms == (draw(regression, [B], some.terms[0])[0],) and told.kind == some.kind
 
 
 @pytest.fixture
