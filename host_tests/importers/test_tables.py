@@ -355,7 +355,7 @@ def test_usual_names_and_units_of_rates_are_known(tmp_path, name):
     [
         ("accel_{}_ug", 1e6), ("imu1.fb{}", 9.80665), ("Corrected Accelerometer Vector {} (g)", 1),
         ("f_{}", 9.80665), ("acce_{} [m·s⁻²]", 9.80665), ("{}_ACCL_OUT (milli-g)", 1e3),
-        ("accelerationIncludingGravity.{}", 9.80665),
+        ("accelerationIncludingGravity.{}", 9.80665), ("GForce{}", 1),
     ],
 )  # fmt: skip
 def test_usual_names_and_units_of_forces_are_known(tmp_path, name, size):

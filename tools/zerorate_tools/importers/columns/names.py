@@ -19,7 +19,7 @@ _GYRO = re.compile(
     + f"{_AXIS}{_MADE}{_NUMBER}$|^{_AXIS}(?:gyroscope|gyro|gyr|rate){_MADE}$"
 )
 _ACCEL = re.compile(
-    r"(?:.*(?:accelerometer|acceleration|accel|acce|accl|acc|acel|specificforce)"
+    r"(?:.*(?:accelerometer|acceleration|accel|acce|accl|acc|acel|specificforce|gforce)"
     rf"\d?{_CHIP}(?:uncalibrated|uncal|calibrated|smooth|adc|raw|data|dof|ms2|m?g|values?|v|vector|ln|wr|static"
     r"|noise|includinggravity){0,2}"
     r"|(?:.*imu\d*)?(?:ac?|gf|fb?|abs))"
