@@ -9,6 +9,7 @@ from operator import xor
 import numpy as np
 import pandas as pd
 import pytest
+from zerorate_tools.errors import BadRecording
 from zerorate_tools.importers import Options, import_recording, parsed_mapping, read_foreign
 from zerorate_tools.importers.tables import checked_lines, delimited
 from zerorate_tools.recordings import (
@@ -269,12 +270,21 @@ def test_an_attitude_is_offered_with_words_that_keep_its_digits(tmp_path, names)
         assert recording.columns[name] == pytest.approx(1e6 * part, abs=0.51)
 
 
+def test_a_clock_that_is_set_back_is_refused(tmp_path):
+    frame = table(1000)
+    frame.loc[500:, "t_s"] -= 0.3
+    with pytest.raises(BadRecording, match="row 501: the clock is set back; cut it there"):
+        read(tmp_path, frame)
+
+
 def test_a_counter_that_jumps_is_offered_as_the_time(tmp_path):
     frame = table(500).drop(columns="t_s").assign(seq=np.arange(500)).drop(range(100, 150))
     _, report = read(tmp_path, frame, options=COUNTED)
     (doubt,) = report.doubts
     assert "'seq' skips 50 samples: give --map t_us=seq:x10000 and not --hz" in doubt
     assert not read(tmp_path, frame[:100], options=COUNTED)[1].doubts
+    held = frame[HEAD.split(",")[1:]].loc[frame.index.repeat(2)]  # each row is a time, too
+    assert not read(tmp_path, held, options=COUNTED)[1].doubts
 
 
 CLOCK = [f"12:00:{t:06.3f}" for t in table(500)["t_s"]]

@@ -285,6 +285,8 @@ def by_habit(target: str, column: str, names: list[str]) -> tuple[str, str] | No
         return habit, "as in ROS"
     if "seconds_elapsed" in names:
         return habit, "as Sensor Logger writes"
+    if kind == "gyro" and text.endswith("beta"):
+        return "dps", "as browsers write"
     if kind == "gyro" and any("useracceleration" in spelled(name) for name in names):
         return habit, "as CoreMotion writes"
     if "rtcTime" in names and kind != "time":

@@ -321,8 +321,8 @@ def _offered(table: Table, wanted: Mapping[str, Mapped], missing: list[str], kno
         likely = likely_columns(table) if not set(wanted) - {TIME} else []
         return " ".join(f"--map {shlex.quote(words)}" for words in likely)
     bare = usual.bare_axes(table.names)
-    ask = bare and not known
-    unit = (by_habit("gx", bare["gx"], table.names) or ("dps", ""))[0] if ask else ""
+    habit = by_habit("gx", bare["gx"], table.names) if bare and not known else None
+    unit = habit[0] if habit else None
     return " ".join(map_words(t, c, unit) for t, c in bare.items() if t in missing)
 
 

@@ -31,7 +31,7 @@ from ..columns.guesses import (
 from ..columns.mapping import map_words
 from ..columns.plan import Plan
 from ..tables.table import Table
-from .gather import Gathered
+from .gather import HELD, Gathered
 
 _GRAVITY_WITHIN = 0.2
 #: A sensor's scale may be off by so much, and a speed that was gained adds little over so long.
@@ -71,7 +71,7 @@ def doubts(found: Gathered, plan: Plan, table: Table, scales: Scales, path: Path
     else:
         out = _of_turning(times, found.counted, plan, scales, path)
     out += _of_temperature(found.looked_at, plan)
-    lost = sum(found.dropped.values())
+    lost = sum(found.dropped.values()) - found.dropped[HELD]
     if found.counted and lost > _LOST * found.rows:
         out.append(
             f"{lost} of {found.rows} rows are dropped, and --hz counts them as time: "

@@ -34,6 +34,7 @@ _FAST_SHARE = 0.001
 #: A bus that is late now and then repeats fewer rows.
 _OFTEN_NEW = 0.8
 _NO_TIME = "the time stamp is no number"
+HELD = "the reading before once more, read faster than the sensor measures"
 
 
 @dataclass
@@ -118,6 +119,7 @@ class _Gathering:
             self._leave_lines_out()
             if self.runs.steps_back:
                 self._refuse_turns([self._some(n, columns) for n, columns in enumerate(self.spool)])
+                self.runs.refuse_mixed(self.spool, self.path)
         except BaseException:
             self.spool.close()
             raise
@@ -216,8 +218,8 @@ class _Gathering:
         rows = np.array([columns[name] for name in self.compared])
         before = np.column_stack([self.before, rows[:, :-1]]) if rows.size else rows
         self.before = rows[:, -1] if rows.size else self.before
-        why = "the reading before once more, read faster than the sensor measures"
-        return ~(rows == before).all(axis=0), why if self.held else "the row before once more"
+        why = HELD if self.held else "the row before once more"
+        return ~(rows == before).all(axis=0), why
 
     def _not_all_zero(self, columns: Columns) -> tuple[np.ndarray, str]:
         """Three rates alone may well be zero on a coarse scale; with gravity, or 0 degC, they are

@@ -17,8 +17,8 @@ _MOST_WAITING = 2_000_000
 #: Rows in a row, from which on a stretch in order counts as one of its own.
 _LONG = 100
 _SHARED = 0.1
-#: NTP sets a clock that is off by more, and only slows or hastens one that is off by less.
-_STEP_US = 128e3
+#: Rows that one step back may mix with others: late ones fill gaps, bursts overlap by few.
+_MIXED = 10
 
 
 #: The first and the last reading, each as (t_us, value).
@@ -116,7 +116,8 @@ class Runs:
 
     def __init__(self) -> None:
         self.steps_back = 0
-        self._long: list[tuple[float, float, int, float]] = []
+        self._first_back = 0
+        self._long: list[tuple[float, float, int]] = []
         self._begin: tuple[float, int] | None = None
         self._last = 0.0
         self._rows = 0
@@ -127,6 +128,8 @@ class Runs:
             self._begin, self._last = (t_us[0], int(place[0])), t_us[0]
         read, start = np.append(self._last, t_us), 0
         back = np.flatnonzero(np.diff(read) < 0).tolist()
+        if back and not self.steps_back:
+            self._first_back = int(place[back[0]])
         self.steps_back += len(back)
         for at in back:
             self._rows += at - start
@@ -140,24 +143,29 @@ class Runs:
         to well before the one above it: a clock was set back, or a counter ran over. Halves in the
         wrong order fit together."""
         self._close(self._last)
-        for (above, *_), (begin, end, place, _) in zip(self._long, self._long[1:]):
+        for (above, _, _), (begin, end, place) in zip(self._long, self._long[1:]):
             if above - end > _SHARED * (end - begin):
                 row = place + 1
                 raise BadRecording(path, "time begins anew", row=row, do=cut_words(path, row))
         latest, before = -np.inf, None
-        for begin, end, place, shared in sorted(self._long):
-            if before is not None and latest - begin > shared:
+        for begin, end, place in sorted(self._long):
+            if before is not None and latest - begin > _SHARED * (end - begin):
                 row = max(place, before) + 1
                 raise BadRecording(path, "time begins anew", row=row, do=cut_words(path, row))
             if end > latest:
                 latest, before = end, place
 
+    def refuse_mixed(self, spool: Spool, path: Path) -> None:
+        """Raise BadRecording where rows by time stand between others than they were read between:
+        the clock was set back."""
+        places = (columns[PLACE][np.isfinite(columns["gx"])] for columns in spool)
+        if sum(int(np.sum(np.diff(p) < 0)) for p in places) > _MIXED * self.steps_back:
+            row = self._first_back + 1
+            raise BadRecording(path, "the clock is set back", row=row, do=cut_words(path, row))
+
     def _close(self, end: float) -> None:
         if self._begin is not None and self._rows >= _LONG:
-            begin, place = self._begin
-            ten_rows = _SHARED * _LONG * (end - begin) / self._rows
-            shared = min(_SHARED * (end - begin), max(_STEP_US, ten_rows))
-            self._long.append((begin, end, place, shared))
+            self._long.append((self._begin[0], end, self._begin[1]))
         self._rows = 0
 
 
