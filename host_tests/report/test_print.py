@@ -4,6 +4,7 @@ import subprocess
 
 import numpy as np
 import pytest
+from zerorate_tools.closing import motion_in_words
 from zerorate_tools.model import build_model, write_model
 from zerorate_tools.recordings import Scales
 from zerorate_tools.report.motion_page import motion_page
@@ -87,14 +88,14 @@ ERROR = np.array([[0.012, 0.001, -0.002], [0.003, -0.009, 0.004], [-0.001, 0.002
 CI = np.full((3, 3), 0.0005)
 
 
-def result_of(ci=CI, found=True, not_seen=()):
+def result_of(ci=CI, found=True, not_seen=(), lost_after=0.4):
     effect = {"effect": "scale-factor+cross-axis", "confidence": "confirmed"}
     return {
         "effects": [effect] if found else [],
         "unexplained": {"what_is_known": "Nothing.", "measure_next": ["turn it"]},
         "in_motion": {
             **{"before": 1.0, "after": 0.2, "unit": "degrees a minute of tilt", "windows": 12},
-            **{"lost_before": 3.1, "lost_after": 0.4},
+            **{"lost_before": 3.1, "lost_after": lost_after},
             "matrix_percent": (100 * ERROR).tolist(),
             "ci95_percent": (100 * ci).tolist(),
             "not_seen": list(not_seen),
@@ -157,6 +158,13 @@ def test_it_is_read_on_a_phone_and_on_a_desk(opened, width):
     assert all(len(labels.nth(i).get_attribute("aria-label")) > 30 for i in range(labels.count()))
     seen = np.abs(np.array(dots(tab, "before"))).max()
     assert 20 < seen < 100  # an interval that was not seen makes the others no smaller
+
+
+@pytest.mark.parametrize(("lost_after", "said"), [(0.4, "loses 0.40"), (3.1, "loses nothing")])
+def test_a_heading_that_no_axis_turns_is_not_said_to_be_lost(opened, lost_after, said):
+    result = result_of(lost_after=lost_after)
+    assert said in opened(result).text_content("h1")
+    assert ("no heading" in motion_in_words(result)) == (lost_after == 3.1)
 
 
 def test_it_is_printed_in_light_from_a_dark_screen(opened, tmp_path):

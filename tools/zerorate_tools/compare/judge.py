@@ -280,10 +280,12 @@ class Won:
         before, after = self.turned
         if not self.deployed:
             return f"In motion no matrix would lower the error: {seen_in_words(before, self.unit)}."
+        heading = [f"{h:.2f}" for h in self.heading]
+        less = f"{heading[1]} of {heading[0]} degrees a minute of heading, and "
         return (
-            f"In motion the matrix of `zerorate close` would leave {self.heading[1]:.2f} of "
-            f"{self.heading[0]:.2f} degrees a minute of heading, and {after:.2f} of {before:.2f} "
-            f"{self.unit} on windows left out."
+            "In motion the matrix of `zerorate close` would leave "
+            f"{less if heading[0] != heading[1] else ''}{after:.2f} of {before:.2f} {self.unit} "
+            "on windows left out."
         )
 
     def rows(self) -> list[tuple[str, str, str, str]]:

@@ -49,8 +49,10 @@ def heading_of(t: RateScale) -> dict[str, float]:
 
 def heading_in_words(m: Mapping[str, Any]) -> str:
     """A clause each of what the entries tell and, if there is one, an attitude."""
-    before, after = m["lost_before"], m["lost_after"]
-    said = f"it turns the heading by {before:.2f} -> {after:.2f} degrees a minute"
+    before, after = f"{m['lost_before']:.2f}", f"{m['lost_after']:.2f}"
+    said = f"it turns the heading by {before} -> {after} degrees a minute"
+    if before == after:  # axes turned alike
+        said = "it tilts, but turns no heading"
     if "heading_before" not in m:
         return said
     return f"{said}; against the attitude {m['heading_before']:.2f} -> {m['heading_after']:.2f}"
