@@ -124,7 +124,7 @@ HEADER = "t_us,gx,gy,gz"
 @pytest.mark.parametrize(("names", "complaint"), [
     (["t_us", "gx", "gy"], "column gz is missing; turn it into a recording: zerorate import"),
     (["gx", "gy", "gz"], "column t_us is missing; "),
-    (["t_us", "gy"], "columns gx, gz are missing; "),
+    (["t_us", "gy", "b", "b"], "columns gx, gz are missing; "),
     (["t_us", "gx", "gy", "gz", "ax"], "of ax ay az only ax is there; give all three or none"),
     (["t_us", "gx", "gy", "gz", "ay", "az"], "of ax ay az only ay, az is there"),
     (["t_us", "gx", "gy", "gz", "b", "b"], "column b comes twice; rename or drop one"),

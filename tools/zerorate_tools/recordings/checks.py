@@ -25,15 +25,15 @@ def check_names(names: list[str], path: Path) -> None:
     broken = next((name for name in names if not name.isprintable()), None)
     if broken is not None:
         raise BadRecording(path, f"column name {broken!r} is not printable", do="rename it")
-    twice = next((name for name in names if names.count(name) > 1), None)
-    if twice is not None:
-        raise BadRecording(path, f"column {twice} comes twice", do="rename or drop one")
     missing = [name for name in (TIME, *GYRO) if name not in names]
     if missing:
         suffix = ".parquet" if path.suffix == ".parquet" else ".csv"
         do = f"turn it into a recording: zerorate import {path} --out imported{suffix}"
         words = "column {} is missing" if len(missing) == 1 else "columns {} are missing"
         raise BadRecording(path, words.format(", ".join(missing)), do=do)
+    twice = next((name for name in names if names.count(name) > 1), None)
+    if twice is not None:
+        raise BadRecording(path, f"column {twice} comes twice", do="rename or drop one")
     accel = [name for name in ACCEL if name in names]
     if accel and len(accel) < 3:
         have = ", ".join(accel)
