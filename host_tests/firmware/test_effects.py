@@ -130,7 +130,7 @@ SELDOM = {
 @given(chosen=ANY_TERM)
 @example(chosen=NARROW)
 @example(chosen=SELDOM)
-@settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=8, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 def test_any_slot_stays_below_a_tenth_of_the_floor(chosen, warm_up):
     low, high = CENTRES[chosen["source"]]
     width = chosen["share"][0] * (high - low)
@@ -163,7 +163,7 @@ HARSH = [-32768, 32767, 0]
     chosen=st.lists(ANY_TERM, min_size=1, max_size=8),
     ends=st.lists(st.sampled_from(HARSH), min_size=3, max_size=3),
 )
-@settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 def test_no_intermediate_leaves_31_bits(chosen, ends):
     """The largest coefficients that a model may have, and readings from rail to rail."""
     slots, delays = [], 0

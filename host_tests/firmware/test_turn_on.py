@@ -121,7 +121,7 @@ def test_the_very_first_bias_stands_while_it_is_being_learned(odr_hz):
 
 
 READINGS = 30000
-SEEDS = range(20)
+SEEDS = range(10)
 
 
 def moving(kind, n, draw):

@@ -51,8 +51,7 @@ def sessions(tmp_path_factory):
 
 
 def test_close_writes_the_binding_of_its_recordings(sessions, tmp_path):
-    device = simulate(7, [("thermal-hysteresis", 5.0)])
-    close([sessions(s) for s in device.sessions], tmp_path)
+    close([sessions(s) for s in simulate(8, sessions=3).sessions], tmp_path)
     assert read_model(tmp_path / "model.bin").binding == Binding(0x68, 0, 0, 3)
 
 
