@@ -68,8 +68,9 @@ def test_a_bias_that_follows_the_temperature_is_followed_without_a_lag():
     assert with_slope.max() < 40 < without.max()
 
 
-def test_an_accelerometer_off_by_20_mg_hardly_passes_for_a_turning_part():
-    motion = motions.wandering(0, 180)
+@pytest.mark.parametrize("seed", [0, 1])
+def test_an_accelerometer_off_by_20_mg_hardly_passes_for_a_turning_part(seed):
+    motion = motions.wandering(seed, 180)
     motion.samples[:, :3] += np.array([328, -328, 328])
     errors = Learner().feed(motion).errors_mdps(motion.bias_dps, after_s=150)
     print("rms error of each axis", np.sqrt(np.mean(errors**2, axis=0)), "mdps")
