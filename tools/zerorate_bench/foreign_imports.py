@@ -10,7 +10,6 @@ import io
 import re
 import shlex
 import tempfile
-from collections.abc import Callable
 from dataclasses import replace
 from itertools import product
 from pathlib import Path
@@ -21,7 +20,7 @@ from zerorate_tools.cli import main
 from zerorate_tools.recordings import Recording, read_recording
 
 from .foreign_logs import CORPUS, Log, World
-from .tables import table
+from .tables import measured, table
 
 RIGHT, BY_ITS_WORDS, REFUSED = "right", "right by its words", "refused with the cure"
 WRONG, MISLED, NO_CURE = "WRONG", "its words are WRONG", "refused WITHOUT a cure"
@@ -55,18 +54,10 @@ _OPTION = re.compile(r"--[a-z-]+ (?:'[^']*'|[^\s,;()]+)(?: \(or [^)]*\))?")
 _UNIT_OF_TIME = re.compile(r"--time-unit ((?:\S+ \([^)]*\)(?: or )?)+)")
 
 
-def run(only: str, advance: Callable[[float], None]) -> dict[str, object]:
+def run(only: str) -> dict[str, object]:
     """The outcome of each log whose description holds `only`."""
-    rows = []
-    for log in CORPUS:
-        if only.lower() in log.what.lower():
-            rows.append(judged(log))
-        advance(1)
-    return {"rows": rows}
-
-
-def steps() -> int:
-    return len(CORPUS)
+    logs = [log for log in CORPUS if only.lower() in log.what.lower()]
+    return {"rows": [judged(log) for log in measured(logs)]}
 
 
 def judged(log: Log) -> dict[str, str]:

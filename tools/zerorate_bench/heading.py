@@ -4,7 +4,7 @@ VQF runs with its own bias estimation off. The bias is that of the first rest. T
 against the optics, over the motion, after a constant turn between their frame and the sensor's.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -20,7 +20,7 @@ from zerorate_tools.loop.motion.matrix import beside, fit
 from zerorate_tools.loop.motion.moving import Moving, in_the_axes_of, moving_of
 from zerorate_tools.recordings.writing import write_recording
 
-from .tables import table
+from .tables import measured, table
 
 Array = NDArray[np.float64]
 _G = 9.80665
@@ -39,7 +39,7 @@ GROUPS = (("01", "02", "06", "12", "16", "24"), ("21", "29", "30"))
 LIMITS = (0.7, 2.5)
 
 
-def run(data: list[Path], advance: Callable[[float], None] = lambda n: None) -> dict[str, Any]:
+def run(data: list[Path]) -> dict[str, Any]:
     """Trial -> degrees before and after, fitted on the other trials of its group and on its own
     first half; and whether both groups together are refused. Raises ZerorateError."""
     every = {t.name[:2]: t for folder in data for t in trials(folder)}
@@ -48,18 +48,16 @@ def run(data: list[Path], advance: Callable[[float], None] = lambda n: None) -> 
     found: dict[str, Any] = {"others": {}, "halves": {}, **_refused(list(moving.values()))}
     seen = {n: _seen(t, moving[n]) for n, t in every.items()}
     found["optics"] = _by_optics(seen, found["refused"])
-    for number, group in enumerate(GROUPS):
-        own = [n for n in group if n in every]
-        for name in own:
-            others = [moving[n] for n in own if n != name]
-            shown = by_windows(others, []) if others else None
-            optics = by_windows([seen[n] for n in own if n != name], []) if others else None
-            optics_too = _row(every[name], number, optics)["after"]
-            found["others"][name] = _row(every[name], number, shown) | {"optics": optics_too}
-            half = _half(every[name], moving[name], number)
-            half["others"] = _row(every[name], number, shown, 0.5)["after"]
-            found["halves"][name] = half
-            advance(1)
+    known = [(k, group, n) for k, group in enumerate(GROUPS) for n in group if n in every]
+    for number, group, name in measured(known):
+        others = [n for n in group if n in every and n != name]
+        shown, optics = (
+            by_windows([of[n] for n in others], []) if others else None for of in (moving, seen)
+        )
+        optics_too = _row(every[name], number, optics)["after"]
+        found["others"][name] = _row(every[name], number, shown) | {"optics": optics_too}
+        half = _half(every[name], moving[name], number)
+        found["halves"][name] = half | {"others": _row(every[name], number, shown, 0.5)["after"]}
     return found
 
 
@@ -78,8 +76,7 @@ def _refused(moving: list[Moving]) -> dict[str, list[Any]]:
     try:
         by_windows(moving, [])
     except DifferentDevices as problem:
-        groups = [sorted(group) for group in problem.groups]
-        return {"refused": groups, "unsure": sorted(problem.unsure)}
+        return {"refused": [*map(sorted, problem.groups)], "unsure": sorted(problem.unsure)}
     return {"refused": [], "unsure": []}
 
 
@@ -166,13 +163,12 @@ def in_markdown(found: dict[str, Any]) -> str:
                 f"Group {number + 1}, {', '.join(own)}, each fitted on the others: median "
                 f"{np.median(after):.2f} degrees, must be at most {limit}: {met}."
             )
-    groups = " and ".join(", ".join(g) for g in found["refused"])
-    unsure = ", ".join(found["unsure"])
+    groups, unsure = [", ".join(group) for group in found["refused"]], ", ".join(found["unsure"])
     either = f"; {unsure} could also be with the others" if unsure else ""
-    verdict = f"refused, {groups}{either}" if groups else "NOT refused"
+    verdict = f"refused, {' and '.join(groups)}{either}" if groups else "NOT refused"
     parts.append(f"All trials as one device: {verdict}.")
     if found["optics"]:
-        heads = ["trial, by the optics", *(f"distance to {', '.join(g)}" for g in found["refused"])]
+        heads = ["trial, by the optics", *(f"distance to {group}" for group in groups)]
         rows = [[n, *(f"{d:.0f}" for d in far)] for n, far in found["optics"].items()]
         parts += [table(heads, rows), _OPTICS]
     for key, words in (("others", "other trials"), ("halves", "its first half")):

@@ -11,8 +11,6 @@ from .children import close_cost
 from .heading_simulated import Case, recorded
 from .tables import table
 
-_HOUR_S = 3600.0
-
 
 @dataclass(frozen=True)
 class Size:
@@ -29,12 +27,7 @@ class Size:
         return f"{self.recordings} of {self.seconds / 60:g} minutes at {self.hz:g} Hz"
 
 
-SIZES = (Size(6, 180.0, 286.0, 0.2, 15.0, 1.0), Size(1, 8 * _HOUR_S, 100.0, 0.5, 60.0, 1.0))
-
-
-def run() -> list[dict[str, Any]]:
-    """Seconds of processor and GB of `zerorate close` for each size, and what it found."""
-    return [_measured(size) for size in SIZES]
+SIZES = (Size(6, 180.0, 286.0, 0.2, 15.0, 1.0), Size(1, 8 * 3600.0, 100.0, 0.5, 60.0, 1.0))
 
 
 def write(size: Size, folder: Path) -> None:
@@ -47,9 +40,10 @@ def write(size: Size, folder: Path) -> None:
         write_recording(recording, folder / f"run-{number}.parquet")
 
 
-def _measured(size: Size) -> dict[str, Any]:
-    cost = close_cost(f"from {__name__} import *\nwrite({size!r}, folder)")
-    return {"size": str(size), "limits": [size.most_s, size.most_gb]} | cost
+def run() -> list[dict[str, Any]]:
+    """Seconds of processor and GB of `zerorate close` for each size, and what it found."""
+    costs = (close_cost(f"from {__name__} import *\nwrite({s!r}, folder)") for s in SIZES)
+    return [{"size": str(s), "limits": [s.most_s, s.most_gb], **c} for s, c in zip(SIZES, costs)]
 
 
 def passed(found: list[dict[str, Any]]) -> bool:

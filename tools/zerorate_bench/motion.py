@@ -3,9 +3,11 @@
 zerorate bench motion --data FOLDER/broad --json motion.json
 """
 
+from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -20,12 +22,21 @@ from zerorate_tools.simulate.schema import Description
 
 from .native.native_cost import source_cost
 from .peers import Decision, Judged, Source, vqf_clip_raised
-from .tables import table
+from .tables import measured, table
 
-SCENARIOS = (
-    *("never-rests", "rests-30", "short-rests", "trembling", "slow-tilt", "slow-log"),
-    *("turntable", "turntable-vertical", "car"),
-)
+#: Scene -> its words, and the most RMS error of the decision after two minutes, mdps, of every seed
+#: or of the median one; None: no window may be learned wrongly.
+SCENARIOS: dict[str, tuple[str, float | None]] = {
+    "never-rests": ("swings, strides and waves, never at rest", 15.0),
+    "rests-30": ("the same, at rest 30 % of the time", 10.0),
+    "short-rests": ("handled, rests of one second", 6.0),
+    "trembling": ("a trembling hand", 30.0),
+    "slow-tilt": ("a boat that tilts slowly", 20.0),
+    "slow-log": ("the same at 5 samples a second", 30.0),
+    "turntable": ("one slow turn about a level axis", None),
+    "turntable-vertical": ("one slow turn about the vertical", None),
+    "car": ("a car in curves", None),
+}
 SEEDS = (1, 2, 3, 4, 5)
 SETTLED_S = 120.0
 TRIAL_SETTLED_S = 60.0
@@ -80,53 +91,48 @@ def peers() -> dict[str, Peer]:
 def simulated(ways: Mapping[str, Peer], seeds: Sequence[int] = SEEDS) -> dict[str, Any]:
     """Scenario -> way -> each seed's RMS error after two minutes, mdps, windows, honesty."""
     found: dict[str, Any] = {}
-    for name in SCENARIOS:
-        found[name] = {
+    for name in measured(SCENARIOS):
+        described = load_description(name)
+        straight = replace(described, bias=replace(described.bias, b1=0.0, b2=0.0, b3=0.0))
+        scenes: list[tuple[str | Description, Mapping[str, Peer]]] = [
+            (name, ways),
+            (with_flicker(name, FLICKER_DPS), {FLICKERING: Decision()}),
+            (straight, {TOLD: Source("in_motion", slope_dps_per_degc=0.0001)}),
+        ]
+        rows = found[name] = {
             way: {"rms_mdps": [], "learned": 0, "wrong": 0, "within": []}
             for way in (*ways, FLICKERING, TOLD)
         }
-        flickering = {FLICKERING: Decision()}
-        without_curve = {TOLD: Source("in_motion", slope_dps_per_degc=0.0001)}
-        for seed in seeds:
-            _measure(found[name], ways, name, seed)
-            _measure(found[name], flickering, with_flicker(name, FLICKER_DPS), seed)
-            _measure(found[name], without_curve, _without_curve(name), seed)
+        for seed, (scene, some) in product(seeds, scenes):
+            _measure(rows, some, scene, seed)
     return found
-
-
-def _without_curve(name: str) -> Description:
-    described = load_description(name)
-    return replace(described, bias=replace(described.bias, b1=0.0, b2=0.0, b3=0.0))
 
 
 def _measure(
     rows: dict[str, dict[str, Any]], ways: Mapping[str, Peer], scene: str | Description, seed: int
 ) -> None:
-    recording, truth = simulate(scene, session=1, seed=seed)
-    one = given(recording)
-    bias = truth.bias_lsb / recording.scales.gyro_lsb_per_dps
+    one, bias = _seen(scene, seed)
     for way, peer in ways.items():
         with suppress(ValueError):  # too slow a rate for the source in motion
-            row = _measured(peer, one, bias)
-            _add(rows[way], row, round(SETTLED_S * one.odr_hz))
+            error, row = _measured(peer, one, bias)
+            after = round(SETTLED_S * one.odr_hz)
+            rows[way]["rms_mdps"].append(round(rms_mdps(error[after:]), 1))
+            for count in ("learned", "wrong") if row else ():
+                rows[way][count] += row[count]
+            if row and row["within_two_sigma"] is not None:
+                rows[way]["within"].append(row["within_two_sigma"])
 
 
-def _add(row: dict[str, Any], measured: dict[str, Any], after: int) -> None:
-    row["rms_mdps"].append(round(rms_mdps(measured["error_dps"][after:]), 1))
-    row["learned"] += measured.get("learned", 0)
-    row["wrong"] += measured.get("wrong", 0)
-    if measured.get("within_two_sigma") is not None:
-        row["within"].append(measured["within_two_sigma"])
+def _seen(scene: Any, seed: int | None = None) -> tuple[Given, NDArray[np.float64]]:
+    """A scene's first session, and its true bias (n, 3), dps."""
+    recording, truth = simulate(scene, session=1, seed=seed)
+    return given(recording), truth.bias_lsb / recording.scales.gyro_lsb_per_dps
 
 
 def on_broad(ways: Mapping[str, Peer], folder: Path) -> dict[str, Any]:
     """trials: each one's true bias; whole, motion: way -> errors per trial and axis, mdps."""
-    found: dict[str, Any] = {
-        "trials": {},
-        "whole": {w: {} for w in ways},
-        "motion": {w: {} for w in ways},
-    }
-    for trial in trials(folder):
+    found: dict[str, Any] = {"trials": {}, "whole": defaultdict(dict), "motion": defaultdict(dict)}
+    for trial in measured(list(trials(folder))):
         truth = true_bias(trial)
         found["trials"][trial.name] = {n: np.round(v, 5).tolist() for n, v in vars(truth).items()}
         for part, cut in (("whole", trial), ("motion", trial.in_motion())):
@@ -137,29 +143,25 @@ def on_broad(ways: Mapping[str, Peer], folder: Path) -> dict[str, Any]:
 
 def _on_trial(peer: Peer, trial: Trial, truth: TrueBias) -> dict[str, Any]:
     one = given(trial.recording())
-    row = _measured(peer, one, np.tile(truth.bias_dps, (len(one.rate_dps), 1)))
-    error = row.pop("error_dps")[round(TRIAL_SETTLED_S * trial.hz) :]
-    return {"rms_mdps": [round(rms_mdps(error[:, axis]), 1) for axis in range(3)], **row}
+    error, row = _measured(peer, one, np.tile(truth.bias_dps, (len(one.rate_dps), 1)))
+    error = error[round(TRIAL_SETTLED_S * trial.hz) :]
+    return {"rms_mdps": [round(rms_mdps(axis), 1) for axis in error.T], **row}
 
 
-def _measured(peer: Peer, one: Given, bias: NDArray[np.float64]) -> dict[str, Any]:
-    if not isinstance(peer, Judged):
-        return {"error_dps": peer([one])[0] - bias}
-    peer.truth_dps = [bias]
+def _measured(
+    peer: Peer, one: Given, bias: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], dict[str, Any]]:
+    """(n, 3) error, dps; of a peer that says how sure it is, what it learned, too."""
+    if isinstance(peer, Judged):
+        peer.truth_dps = [bias]
     error = peer([one])[0] - bias
+    if not isinstance(peer, Judged):
+        return error, {}
     inside = float(np.mean(peer.within)) if peer.within else None
-    counts = {"learned": peer.learned, "wrong": peer.wrong}
-    return {"error_dps": error, **counts, "within_two_sigma": inside}
+    return error, {"learned": peer.learned, "wrong": peer.wrong, "within_two_sigma": inside}
 
 
-def _cost() -> dict[str, dict[str, float]] | str:
-    try:
-        return source_cost()
-    except MissingRuntime as error:
-        return str(error)
-
-
-def run(data: Path | None = None) -> dict[str, Any]:
+def run(data: Path | None) -> dict[str, Any]:
     """Measure and return all figures.
 
     data: the folder of BROAD's .mat files; without it only the simulated table is made.
@@ -167,8 +169,11 @@ def run(data: Path | None = None) -> dict[str, Any]:
     """
     ways = peers()
     found: dict[str, Any] = {} if data is None else {"broad": on_broad(ways, data)}
-    found |= {"simulated": simulated(ways), "flicker": by_flicker()}
-    return found | {"settling": settling(), "cost": _cost()}
+    found |= {"simulated": simulated(ways), "flicker": by_flicker(), "settling": settling()}
+    try:
+        return found | {"cost": source_cost()}
+    except MissingRuntime as error:
+        return found | {"cost": str(error)}
 
 
 def settling() -> dict[str, Any]:
@@ -177,9 +182,7 @@ def settling() -> dict[str, Any]:
     On a device that lies flat with biases of 2.0 and -1.5 dps on its level axes; the slower, and
     the worse, of the two. The third axis points along gravity and is not observable.
     """
-    recording, truth = simulate(_RESTING)
-    one = given(recording)
-    bias = truth.bias_lsb / recording.scales.gyro_lsb_per_dps
+    one, bias = _seen(_RESTING)
     found = {}
     for form, options in FORMS.items():
         error = 1000 * (Source("gravity", **options)([one])[0] - bias)[:, _OBSERVABLE]
@@ -211,39 +214,13 @@ def with_flicker(name: str, flicker_dps: float) -> Description:
 
 
 def _within(scene: Description, seed: int) -> float:
-    recording, truth = simulate(scene, session=1, seed=seed)
     firmware = Decision()
-    firmware.truth_dps = [truth.bias_lsb / recording.scales.gyro_lsb_per_dps]
-    firmware([given(recording)])
+    _measured(firmware, *_seen(scene, seed))
     return float(np.mean(firmware.within))
 
 
-# most RMS error of the decision after two minutes, mdps, of every seed or of the median one; None:
-# no window may be learned wrongly
-LIMITS_MDPS: dict[str, float | None] = {
-    "never-rests": 15.0,
-    "rests-30": 10.0,
-    "short-rests": 6.0,
-    "trembling": 30.0,
-    "slow-tilt": 20.0,
-    "slow-log": 30.0,
-    "turntable": None,
-    "turntable-vertical": None,
-    "car": None,
-}
 _BY_MEDIAN = {"never-rests"}
 _DECISION = "decision"
-_SCENES = {
-    "never-rests": "swings, strides and waves, never at rest",
-    "rests-30": "the same, at rest 30 % of the time",
-    "short-rests": "handled, rests of one second",
-    "trembling": "a trembling hand",
-    "slow-tilt": "a boat that tilts slowly",
-    "slow-log": "the same at 5 samples a second",
-    "turntable": "one slow turn about a level axis",
-    "turntable-vertical": "one slow turn about the vertical",
-    "car": "a car in curves",
-}
 _MEDIANS = {"vqf, clip 25 dps": "vqf, clip 25 dps", "rests alone": "zerorate, rests alone"}
 _HONESTY = """\
 Truth within two sigma, mean over the seeds; must be 90 % of a source's verdicts, and of the \
@@ -252,7 +229,6 @@ decision at the end of each ten seconds:
 _FLICKER = f"""\
 Truth within two sigma, by flicker noise of the part, mean of {len(FLICKER_SEEDS)} seeds:
 """
-_FLICKER_HEAD = ["", *(f"{mdps} mdps" for mdps in FLICKERS_MDPS)]
 _SETTLING = """\
 Against gravity, a device at rest with biases of 2.0 and -1.5 dps; within 50 mdps after, ripple \
 (standard deviation) and mean error of the last 200 s:
@@ -269,39 +245,34 @@ def in_markdown(found: Mapping[str, Any]) -> str:
 
 
 def _parts(found: Mapping[str, Any]) -> Iterator[str]:
-    scenarios = found["simulated"]
+    scenarios, ways = found["simulated"], list(next(iter(found["simulated"].values())))
     yield "# Bias without rest, measured\n\n`zerorate bench motion` wrote this page.\n"
     yield "Simulated, RMS error after two minutes, mdps, median over the seeds:\n"
-    yield table(["device", *_MEDIANS.values(), "zerorate"], list(_medians(scenarios)))
+    rows: list[list[str]] = []
+    for name, of in scenarios.items():
+        errors = [np.median(of[way]["rms_mdps"]) for way in (*_MEDIANS, _DECISION)]
+        rows.append([f"{name}: {SCENARIOS[name][0]}", *(f"{x:,.1f}" for x in errors)])
+    yield table(["device", *_MEDIANS.values(), "zerorate"], rows)
     yield "The same of each seed (windows learned):\n"
-    yield table(["", *scenarios], list(_errors(scenarios)))
+    rows = [[way, *(_cell(of[way]) for of in scenarios.values())] for way in ways]
+    wanted, met = zip(*(_kept(of, name) for name, of in scenarios.items()))
+    yield table(["", *scenarios], [*rows, ["**must be**", *wanted], ["**met**", *met]])
     yield _HONESTY
-    yield table(["", *scenarios], list(_honesty(scenarios)))
+    within = {way: [of[way]["within"] for of in scenarios.values()] for way in ways}
+    rows = [[way, *map(_percent, shares)] for way, shares in within.items() if any(shares)]
+    yield table(["", *scenarios], rows)
     yield _FLICKER
-    yield table(_FLICKER_HEAD, list(_by_flicker(found["flicker"])))
+    rows = [[name, *(_percent([s]) for s in shares)] for name, shares in found["flicker"].items()]
+    yield table(["", *(f"{mdps} mdps" for mdps in FLICKERS_MDPS)], rows)
     yield _SETTLING
     yield table(_SETTLING_HEAD, [[form, *row.values()] for form, row in found["settling"].items()])
     yield f"A sample of each source on a Cortex-M0+, in cycles: {_cost_words(found['cost'])}\n"
     if "broad" in found:
-        broad = found["broad"]
-        yield _BROAD
-        yield table(_BROAD_HEAD, list(_on_broad(broad)))
-        yield _beside_vqf(broad) + "\n"
-        yield "True bias by the optical attitude, dps:\n"
-        yield table(_TRUTH_HEAD, list(_truth(broad["trials"])))
+        yield from _of_broad(found["broad"])
 
 
-def _medians(scenarios: Mapping[str, Any]) -> Iterator[list[str]]:
-    for name, rows in scenarios.items():
-        errors = [np.median(rows[way]["rms_mdps"]) for way in (*_MEDIANS, _DECISION)]
-        yield [f"{name}: {_SCENES[name]}", *(f"{x:,.1f}" for x in errors)]
-
-
-def _errors(scenarios: Mapping[str, Any]) -> Iterator[list[str]]:
-    for way in next(iter(scenarios.values())):
-        yield [way, *(_cell(rows[way]) for rows in scenarios.values())]
-    yield ["**must be**", *(_wanted(name) for name in scenarios)]
-    yield ["**met**", *(_kept(scenarios, name) for name in scenarios)]
+def _percent(shares: Sequence[float]) -> str:
+    return f"{100 * np.mean(shares):.0f} %" if shares else ""
 
 
 def _cell(row: Mapping[str, Any]) -> str:
@@ -309,65 +280,44 @@ def _cell(row: Mapping[str, Any]) -> str:
     return ", ".join(f"{x:.1f}" for x in row["rms_mdps"]) + learned
 
 
-def _wanted(name: str) -> str:
-    limit = LIMITS_MDPS[name]
+def _kept(rows: Mapping[str, Any], name: str) -> tuple[str, str]:
+    """What a scene's decision must keep, and whether it does."""
+    limit = SCENARIOS[name][1]
     if limit is None:
-        return "wrongly learned 0"
-    return f"decision <= {limit:.0f}" + (", median" if name in _BY_MEDIAN else "")
-
-
-def _kept(scenarios: Mapping[str, Any], name: str) -> str:
-    limit, rows = LIMITS_MDPS[name], scenarios[name]
-    if limit is None:
-        return "yes" if rows["in motion"]["wrong"] == 0 else "**no**"
-    errors = rows[_DECISION]["rms_mdps"]
-    judged = np.median(errors) if name in _BY_MEDIAN else max(errors)
-    return "yes" if judged <= limit else "**no**"
-
-
-def _honesty(scenarios: Mapping[str, Any]) -> Iterator[list[str]]:
-    for way in next(iter(scenarios.values())):
-        within = [rows[way]["within"] for rows in scenarios.values()]
-        if any(within):
-            yield [way, *(f"{100 * np.mean(one):.0f} %" if one else "" for one in within)]
-
-
-def _by_flicker(scenes: Mapping[str, Any]) -> Iterator[list[str]]:
-    for name, shares in scenes.items():
-        yield [name, *(f"{100 * share:.0f} %" for share in shares)]
+        return "wrongly learned 0", "**no**" if rows["in motion"]["wrong"] else "yes"
+    of, words = (np.median, ", median") if name in _BY_MEDIAN else (max, "")
+    met = of(rows[_DECISION]["rms_mdps"]) <= limit
+    return f"decision <= {limit:.0f}{words}", "yes" if met else "**no**"
 
 
 def _cost_words(found: Mapping[str, Any] | str) -> str:
     if isinstance(found, str):
         return f"not counted: {found}"
-    costs = [
+    costs = (
         f"{source} {one['cycles']:,.0f}, at worst {one['cycles_worst']:,.0f}"
         for source, one in found.items()
-    ]
+    )
     return "; ".join(costs) + "."
 
 
-def _on_broad(broad: Mapping[str, Any]) -> Iterator[list[str]]:
+def _of_broad(broad: Mapping[str, Any]) -> Iterator[str]:
+    rows, whole = [], {}
     for way in broad["whole"]:
-        cells = []
-        for part in ("whole", "motion"):
-            errors = _errors_of(broad[part][way])
-            cells.append(f"{np.median(errors):.0f} ({np.mean(errors):.0f})")
+        errors = [
+            [x for row in broad[part][way].values() for x in row["rms_mdps"]]
+            for part in ("whole", "motion")
+        ]
+        whole[way] = np.median(errors[0])
         inside = [row.get("within_two_sigma") for row in broad["motion"][way].values()]
-        known = [x for x in inside if x is not None]
-        yield [way, *cells, f"{100 * np.mean(known):.0f} %" if known else ""]
-
-
-def _truth(trials: Mapping[str, Any]) -> Iterator[list[str]]:
-    for name, truth in trials.items():
-        yield [name, *(" ".join(f"{x:.3f}" for x in truth[column]) for column in _TRUTH)]
-
-
-def _beside_vqf(broad: Mapping[str, Any]) -> str:
-    ours, theirs = (np.median(_errors_of(broad["whole"][way])) for way in (_DECISION, "vqf"))
-    kept = "yes" if ours <= theirs else "**no**"
-    return f"The decision must be at or below vqf on the whole trial: {kept}."
-
-
-def _errors_of(rows: Mapping[str, Any]) -> list[float]:
-    return [x for row in rows.values() for x in row["rms_mdps"]]
+        cells = [f"{np.median(some):.0f} ({np.mean(some):.0f})" for some in errors]
+        rows.append([way, *cells, _percent([x for x in inside if x is not None])])
+    yield _BROAD
+    yield table(_BROAD_HEAD, rows)
+    kept = "yes" if whole[_DECISION] <= whole["vqf"] else "**no**"
+    yield f"The decision must be at or below vqf on the whole trial: {kept}.\n"
+    yield "True bias by the optical attitude, dps:\n"
+    rows = [
+        [name, *(" ".join(f"{x:.3f}" for x in truth[column]) for column in _TRUTH)]
+        for name, truth in broad["trials"].items()
+    ]
+    yield table(_TRUTH_HEAD, rows)

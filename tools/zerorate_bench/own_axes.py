@@ -6,7 +6,8 @@ zerorate bench own-axes --data FOLDER [FOLDER ...] --out docs/own-axes.md
 from __future__ import annotations
 
 from array import array
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Sequence
+from itertools import product
 from pathlib import Path
 from typing import Any
 from zlib import crc32
@@ -23,7 +24,7 @@ from zerorate_tools.recordings import Recording
 from .heading import GROUPS, heading_error_deg
 from .heading_simulated import Case, heading_lost_deg, recorded
 from .peers import Source
-from .tables import table
+from .tables import measured, table
 
 Array = NDArray[np.float64]
 WORLDS = ("hand", "headset", "walking", "drone", "robot", "coherent")
@@ -34,27 +35,22 @@ _WRONG, _SIGMAS = 0.002, 3.0
 _STATES = range(3, 12)
 
 
-def run(devices: int, data: Sequence[Path], advance: Callable[[float], None]) -> dict[str, Any]:
+def run(devices: int, data: Sequence[Path]) -> dict[str, Any]:
     """Rows of `devices` in each world, with errors and without, and of each trial of BROAD."""
     found: dict[str, Any] = {"devices": devices, "simulated": {}}
-    for world in WORLDS:
-        for off in (True, False):
-            rows = [one_device(Case(world, i, off)) for i in range(devices)]
-            found["simulated"][f"{world}, {'1 %' if off else 'no'} errors"] = rows
-            advance(1)
+    for world, off in measured([*product(WORLDS, (True, False))]):
+        rows = [one_device(Case(world, i, off)) for i in range(devices)]
+        found["simulated"][f"{world}, {'1 %' if off else 'no'} errors"] = rows
     return found | {"broad": _on_broad(data)}
-
-
-def steps() -> int:
-    """How often `run` advances."""
-    return 2 * len(WORLDS)
 
 
 def one_device(case: Case) -> dict[str, float]:
     """What is left of a device's nine entries, how honest they are, and the heading, degrees."""
     rng = np.random.default_rng([case.number, crc32(case.kind.encode()), case.off])
     hz = float(rng.choice(_RATES_HZ))
-    recording, truth, motion = recorded(case, rng, hz, _SECONDS, _RESTING, _errors)
+    recording, truth, motion = recorded(
+        case, rng, hz, _SECONDS, _RESTING, lambda rng: rng.normal(0, ERROR, (3, 3))
+    )
     mean, sigma = entries(recording)
     left = truth - weighted(mean, sigma)
     wrong = np.abs(left) > np.maximum(_SIGMAS * sigma, np.abs(truth) + _WRONG)
@@ -67,20 +63,15 @@ def one_device(case: Case) -> dict[str, float]:
     }
 
 
-def _errors(rng: np.random.Generator) -> Array:
-    return rng.normal(0, ERROR, (3, 3))
-
-
 def entries(recording: Recording) -> tuple[Array, Array]:
     """Mean and one sigma, (3, 3) each, of `error = matrix rate` at the recording's end."""
     source = Source("in_motion")
     source([given(recording)])
     state = array("i", source.state.tolist())
     push = float(np.ldexp(state[MOTION.PUSH], state[MOTION.PUSH + 1]))
-    means = [_number(state, MOTION.MEAN + i) for i in _STATES]
-    variances = [push * max(_number(state, known(i, i)), 0.0) for i in _STATES]
-    mean, sigma = (np.reshape(one, (3, 3)) / 2.0**24 for one in (means, np.sqrt(variances)))
-    return mean, sigma
+    mean = np.reshape([_number(state, MOTION.MEAN + i) for i in _STATES], (3, 3))
+    variances = np.reshape([_number(state, known(i, i)) for i in _STATES], (3, 3))
+    return mean / 2.0**24, np.sqrt(push * np.maximum(variances, 0.0)) / 2.0**24
 
 
 def _number(state: array[int], at: int) -> float:
@@ -114,14 +105,13 @@ def in_markdown(found: dict[str, Any]) -> str:
     """The page."""
     heads = ["ten minutes of", "left, %", "worst, %", "within two sigma", "wrong", "heading, deg"]
     trial = ["trial", "half", "by its first half", "all", "by another trial", "by the worst trial"]
-    return "\n".join(
-        [
-            _WORDS.format(n=found["devices"]),
-            table(heads, [_row(world, rows) for world, rows in found["simulated"].items()]),
-            _BROAD,
-            table(trial, list(_trials(found["broad"]))),
-        ]
-    )
+    rows = [_row(world, some) for world, some in found["simulated"].items()]
+    on_broad = []
+    for name, (before, after, whole, *others) in found["broad"].items():
+        by = [np.median(others), max(others)] if others else [np.nan, np.nan]
+        on_broad.append([name, *(f"{value:.2f}" for value in (before, after, whole, *by))])
+    simulated = table(heads, rows)
+    return "\n".join([_WORDS.format(n=found["devices"]), simulated, _BROAD, table(trial, on_broad)])
 
 
 def _row(world: str, rows: list[dict[str, Any]]) -> list[str]:
@@ -131,12 +121,6 @@ def _row(world: str, rows: list[dict[str, Any]]) -> list[str]:
         *(f"{100 * within.mean():.0f} %", f"{wrong.sum()} of {9 * len(rows)}"),
         f"{np.median(before):.2f} -> {np.median(after):.2f}",
     ]
-
-
-def _trials(found: dict[str, list[float]]) -> Iterator[list[str]]:
-    for name, (before, after, whole, *others) in found.items():
-        by = [np.median(others), max(others)] if others else [np.nan, np.nan]
-        yield [name, *(f"{value:.2f}" for value in (before, after, whole, *by))]
 
 
 _WORDS = """\

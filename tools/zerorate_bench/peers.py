@@ -37,7 +37,6 @@ from zerorate_tools.peers import (
 )
 from zerorate_tools.replay.replaying import corrector_for
 
-RAISED = {"biasClip": 25.0, "biasSigmaInit": 8.0}
 _STRETCH_S = 10.0
 _ORDER = 3
 _MEDIAN = 31
@@ -54,19 +53,15 @@ Points = Callable[[Array, Array], tuple[Array, Array]]
 
 def _fitted_on_the_first(sessions: Sequence[Given], points: Points) -> list[Array]:
     first = sessions[0]
-    if first.temp_degc is None:
-        return [np.full(one.rate_dps.shape, np.nan) for one in sessions]
-    temp, rates = points(first.temp_degc[first.still], first.rate_dps[first.still])
+    temp, rates = np.empty(0), np.empty((0, 3))
+    if first.temp_degc is not None:
+        temp, rates = points(first.temp_degc[first.still], first.rate_dps[first.still])
     if len(temp) <= _ORDER:
         return [np.full(one.rate_dps.shape, np.nan) for one in sessions]
     curves = [Polynomial.fit(temp - _ABOUT_DEGC, axis, _ORDER) for axis in rates.T]
-    low, high = temp.min(), temp.max()
-
-    def of(one: Given) -> Array:
-        held = np.clip(np.asarray(one.temp_degc), low, high) - _ABOUT_DEGC
-        return np.stack([curve(held) for curve in curves], axis=1)
-
-    return [of(one) for one in sessions]
+    temps = (np.asarray(one.temp_degc) for one in sessions)
+    held = [np.clip(degc, temp.min(), temp.max()) - _ABOUT_DEGC for degc in temps]
+    return [np.stack([curve(degc) for curve in curves], axis=1) for degc in held]
 
 
 def _px4_points(temp: Array, rates: Array) -> tuple[Array, Array]:
@@ -124,34 +119,29 @@ class Source(Judged):
         self.name, self.options = name, options
 
     def _biases(self, number: int, one: Given) -> Array:
-        state, settings, (bias_at, sigma_at) = self._made(one)
-        lsb = 256 * one.recording.scales.gyro_lsb_per_dps
-        self.state = state
-        rows = np.ascontiguousarray(one.recording.samples(), np.int32)
-        t_us = one.recording.columns["t_us"]
-        dt_us = np.diff(t_us, prepend=2 * t_us[0] - t_us[1]).astype(np.int32)
-        learned = np.zeros(len(rows), np.int8)
-        words = np.zeros((len(rows), 2, 3), np.int32)
-        is_gravity = ctypes.c_int32(self.name == "gravity")
-        library().zerorate_source(
-            *(is_gravity, *map(address, (state, settings, rows, dt_us)), ctypes.c_int64(len(rows))),
-            *(ctypes.c_int32(bias_at), ctypes.c_int32(sigma_at), address(learned), address(words)),
-        )
-        for i in np.flatnonzero(learned):
-            self._judge(number, int(i), words[i, 0] / lsb, words[i, 1] / lsb)
-        return words[:, 0] / lsb
-
-    def _made(self, one: Given) -> tuple[NDArray[np.int32], NDArray[np.int32], tuple[int, int]]:
         scales = one.recording.scales
         sensor = (scales.odr_hz, scales.gyro_lsb_per_dps, scales.accel_lsb_per_g)
         if self.name == "in_motion":
             degree = {"temp_lsb_per_degc": scales.temp_lsb_per_degc}
-            settings = motion_settings(*sensor, **degree, **self.options)
-            state, at = motion_state(settings), _MOTION_WORDS
+            made, state_of, at = motion_settings, motion_state, _MOTION_WORDS
         else:
-            settings = gravity_settings(*sensor, **self.options)
-            state, at = gravity_state(settings), _GRAVITY_WORDS
-        return np.array(state, np.int32), np.array(settings, np.int32), at
+            degree, made, state_of, at = {}, gravity_settings, gravity_state, _GRAVITY_WORDS
+        settings = made(*sensor, **degree, **self.options)
+        state = self.state = np.array(state_of(settings), np.int32)
+        rows = np.ascontiguousarray(one.recording.samples(), np.int32)
+        t_us = one.recording.columns["t_us"]
+        dt_us = np.diff(t_us, prepend=2 * t_us[0] - t_us[1]).astype(np.int32)
+        learned, words = np.zeros(len(rows), np.int8), np.zeros((len(rows), 2, 3), np.int32)
+        arrays = (state, np.array(settings, np.int32), rows, dt_us)
+        library().zerorate_source(
+            *(ctypes.c_int32(self.name == "gravity"), *map(address, arrays)),
+            *(ctypes.c_int64(len(rows)), *map(ctypes.c_int32, at), address(learned)),
+            address(words),
+        )
+        biases = words / (256 * scales.gyro_lsb_per_dps)
+        for i in np.flatnonzero(learned):
+            self._judge(number, int(i), *biases[i])
+        return biases[:, 0]
 
     def _judge(self, number: int, i: int, bias: Array, sigma: Array) -> None:
         self.learned += 1
@@ -171,7 +161,7 @@ def uncorrected(sessions: Sequence[Given]) -> list[Array]:
 
 def vqf_clip_raised(sessions: Sequence[Given]) -> list[Array]:
     """As `vqf_default`, with clip 25 dps and initial sigma 8 dps."""
-    return [vqf_biases(one, RAISED) for one in sessions]
+    return [vqf_biases(one, {"biasClip": 25.0, "biasSigmaInit": 8.0}) for one in sessions]
 
 
 class Decision(Judged):
@@ -203,7 +193,8 @@ class Decision(Judged):
         if self.truth_dps is not None:
             known = source > 0
             inside = np.abs(bias - self.truth_dps[number]) < 2 * sigma
-            ends = slice(round(_STRETCH_S * one.odr_hz) - 1, None, round(_STRETCH_S * one.odr_hz))
+            stretch = round(_STRETCH_S * one.odr_hz)
+            ends = slice(stretch - 1, None, stretch)
             self.within += inside[ends][known[ends]].tolist()
         return bias
 

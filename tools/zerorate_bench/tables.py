@@ -3,14 +3,18 @@
 import json
 import os
 import platform
-from collections.abc import Callable, Iterator, Mapping, Sequence
+import re
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import asdict, is_dataclass
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from threadpoolctl import threadpool_limits
+from zerorate_tools.progress import progress
+
+Case = TypeVar("Case")
 
 
 def table(header: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
@@ -34,7 +38,11 @@ def number(value: float) -> str:
 
 def machine() -> dict[str, str]:
     """Processor and versions."""
-    found = {"processor": _processor(), "cores": str(os.cpu_count()), "system": platform.platform()}
+    cpuinfo = Path("/proc/cpuinfo")
+    text = cpuinfo.read_text("ascii", "replace") if cpuinfo.exists() else ""
+    named = re.search(r"model name.*?: *(.*)", text)
+    found = {"processor": named[1].strip() if named else platform.machine()}
+    found |= {"cores": str(os.cpu_count()), "system": platform.platform()}
     found["python"] = platform.python_version()
     for name in ("zerorate", "numpy", "imufusion", "vqf", "ziglang"):
         try:
@@ -46,17 +54,15 @@ def machine() -> dict[str, str]:
 
 def machine_line(found: Mapping[str, str] | None = None) -> str:
     """The same as one line of Markdown."""
-    found = machine() if found is None else found
-    return "Measured with " + ", ".join(f"{k} {v}" for k, v in found.items()) + ".\n"
+    return "Measured with " + ", ".join(f"{k} {v}" for k, v in (found or machine()).items()) + ".\n"
 
 
-def _processor() -> str:
-    try:
-        with open("/proc/cpuinfo", encoding="ascii", errors="replace") as file:
-            names = [line.partition(":")[2].strip() for line in file if "model name" in line]
-    except OSError:
-        names = []
-    return names[0] if names else platform.machine()
+def measured(cases: Collection[Case]) -> Iterator[Case]:
+    """Each case in turn; a terminal shows how many are done."""
+    with progress("measuring", len(cases)) as advance:
+        for case in cases:
+            yield case
+            advance(1)
 
 
 def outcomes(
@@ -64,7 +70,6 @@ def outcomes(
     cases: Sequence[Any],
     processes: int = 1,
     kept: Path | None = None,
-    advance: Callable[[float], None] = lambda n: None,
 ) -> Iterator[dict[str, Any]]:
     """What `look` says of each case, in plain values: what a file has first, then the others.
 
@@ -73,15 +78,12 @@ def outcomes(
     """
     lines = kept.read_text("utf-8").splitlines() if kept and kept.exists() else []
     known = dict(map(json.loads, lines))
-    for case in (c for c in cases if str(c) in known):
-        advance(1)
-        yield known[str(case)]
+    yield from (known[str(c)] for c in cases if str(c) in known)
     left = [c for c in cases if str(c) not in known]
     with ProcessPoolExecutor(processes, initializer=threadpool_limits, initargs=(1,)) as pool:
-        for case, said in zip(left, pool.map(look, left)):
+        for case, said in zip(measured(left), pool.map(look, left)):
             row = asdict(said) if is_dataclass(said) and not isinstance(said, type) else said
             if kept:
                 with kept.open("a", encoding="utf-8") as file:
                     file.write(json.dumps([str(case), row]) + "\n")
-            advance(1)
             yield row

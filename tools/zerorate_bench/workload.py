@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from array import array
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,11 +26,6 @@ class Workload:
     settings: NDArray[np.int32]
     state: NDArray[np.int32]
 
-    def files(self) -> dict[str, bytes]:
-        """The files that the programs under test read."""
-        parts = {"frames": self.rows, "settings": self.settings, "state": self.state}
-        return {f"{name}.bin": part.astype("<i4").tobytes() for name, part in parts.items()}
-
 
 def workload(samples: int = 2 * CYCLE) -> Workload:
     """`samples` frames after twenty minutes of warming, when every estimator is in use."""
@@ -41,8 +35,5 @@ def workload(samples: int = 2 * CYCLE) -> Workload:
     for _ in engine("native").run(corrector, batches[:1]):
         pass
     rows = np.c_[batches[1].dt_us, batches[1].frames].astype(np.int32)
-    return Workload(rows[:samples], _words(corrector.settings), _words(corrector.state))
-
-
-def _words(values: array[int]) -> NDArray[np.int32]:
-    return np.array(values, np.int32)
+    words = (np.array(of, np.int32) for of in (corrector.settings, corrector.state))
+    return Workload(rows[:samples], *words)

@@ -3,9 +3,12 @@
 import ast
 import tempfile
 import time
-from collections.abc import Callable, Mapping
+from bisect import bisect_left
+from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
+from statistics import median
 from typing import Any
 
 import numpy as np
@@ -19,7 +22,7 @@ from zerorate_tools.model.term import Term
 from zerorate_tools.recordings import Scales
 
 from ..limits import Limit, limits_table, verdicts
-from ..tables import number, table
+from ..tables import measured, number, table
 from ..workload import CYCLE, Workload, workload
 from .pico import CORE_HZ, EmulatedPico, Play, Played, find_pico, on_host, on_pico
 
@@ -72,7 +75,7 @@ import gc
 gc.collect()
 hog = bytearray(gc.mem_free() + gc.mem_alloc() - {heap})
 """
-_STEP = 1024
+_KB = 1024
 _ASIDE = (0, 1000, 3000)
 _PATIENCE_S = 300
 
@@ -98,23 +101,17 @@ def least_heap(pico: EmulatedPico, program: str, sign: str, low: int, high: int)
     program becomes main.py, and a boot.py takes all but so much of the heap. Raises ValueError
     where it does not run in `high`.
     """
-    if not runs_in(pico, program, sign, high):
+    heaps = range((low // _KB + 1) * _KB, high + 1, _KB)
+    at = bisect_left(heaps, True, key=lambda heap: runs_in(pico, program, sign, heap))
+    if at == len(heaps):
         raise ValueError(f"the program does not run in {high} bytes of heap")
-    while high - low > _STEP:
-        middle = (low + high) // 2 // _STEP * _STEP
-        if runs_in(pico, program, sign, middle):
-            high = middle
-        else:
-            low = middle
-    return high
+    return heaps[at]
 
 
 def runs_in(pico: EmulatedPico, program: str, sign: str, heap: int) -> bool:
     """Whether the program prints `sign` before an error, on a board of that heap."""
     with connected(pico.port, go_on=False) as board:
-        board.exec(
-            "import os\nfor n in ('learned.bin',):\n try: os.remove(n)\n except OSError: pass"
-        )
+        board.exec("import os\ntry: os.remove('learned.bin')\nexcept OSError: pass")
         board.fs_writefile("main.py", program.encode(), chunk_size=1024)
         board.fs_writefile("boot.py", _BOOT.format(heap=heap).encode(), chunk_size=1024)
     try:
@@ -147,14 +144,13 @@ _PROGRAM = Path("examples/keep.py")
 _SIGN = "kept"
 #: An image with this firmware frozen into it, where the boards' folder has one.
 _FROZEN = "FROZEN-*.bin"
-_HEAPS = (24 << 10, 88 << 10)
+_HEAPS = (24 * _KB, 88 * _KB)
 
-_KB = 1024
 LIMITS = (
     Limit("heap of import, driver, object", 28 * _KB, "bytes", lambda f: f["heap_bytes"]["rest"]),
     Limit("heap with motion and gravity", 45 * _KB, "bytes", lambda f: f["heap_bytes"]["all"]),
     Limit("heap with everything", 80 * _KB, "bytes", lambda f: f["heap_bytes"]["everything"]),
-    Limit("least heap of the second program", 48 << 10, "bytes", lambda f: f["least_heap_bytes"]),
+    Limit("least heap of the second program", 48 * _KB, "bytes", lambda f: f["least_heap_bytes"]),
     Limit("median sample", 1600, "cycles", lambda f: f["cycles"]["median"]),
     Limit("worst sample", 14000, "cycles", lambda f: f["cycles"]["worst"]),
     Limit("a sample in bursts of 64", 500, "cycles", lambda f: f["cycles"]["burst"]),
@@ -164,71 +160,34 @@ LIMITS = (
 )
 
 
-def steps() -> int:
-    """How often `run` advances."""
-    return 1 + len(CONFIGURATIONS) + 8
-
-
-def run(advance: Callable[[float], None]) -> dict[str, Any]:
+def run() -> dict[str, Any]:
     """The figures, from an emulated Pico. Raises MissingRuntime where none can be had."""
     parts = find_pico()
     found: dict[str, Any] = {"firmware": parts.firmware.name}
     with tempfile.TemporaryDirectory(prefix="zerorate-pico-") as folder:
         with EmulatedPico(parts, link=Path(folder) / "tty") as pico:
-            _measure_rest(pico, found, advance)
-            flash(pico.port, say=_nothing, parts=["all"])
-            _measure_all(pico, found, advance)
-    try:
-        frozen = find_pico(_FROZEN)
-    except MissingRuntime:
-        found["frozen"] = {}
-    else:
-        with EmulatedPico(frozen) as pico:
-            found["frozen"] = {
-                n: _same(pico, p)[0] for n, p in plays(workload(_FROZEN_ROWS)).items()
-            }
-    found["limits"] = verdicts(found, LIMITS)
-    return found
-
-
-def _nothing(line: str) -> None:
-    pass
-
-
-def _measure_rest(
-    pico: EmulatedPico, found: dict[str, Any], advance: Callable[[float], None]
-) -> None:
-    flashed = flash(pico.port, say=_nothing)
-    found["board"], found["flash_bytes"] = str(flashed.facts), flashed.sent_bytes
-    found["heap_bytes"] = {}
-    found["heap_bytes"]["rest"], found["import_s"] = heap_and_import(pico, "rest")
-    advance(1)
-    program = second_program()
-    found["least_heap_bytes"] = least_heap(pico, program, _SIGN, *_HEAPS)
-    advance(1)
-
-
-def _measure_all(
-    pico: EmulatedPico, found: dict[str, Any], advance: Callable[[float], None]
-) -> None:
-    for name in CONFIGURATIONS:
-        if name not in found["heap_bytes"]:
-            found["heap_bytes"][name], _ = heap_and_import(pico, name)
-            advance(1)
-    work = workload()
-    found["golden"], found["cycles"] = {}, {}
-    for name, play in plays(work).items():
-        found["golden"][name], played = _same(pico, play)
-        if name == "rest":
-            found["cycles"]["median"], found["cycles"]["worst"] = played.median, played.worst
-            mean = sum(played.cycles) / len(played.cycles)
-            found["share_percent"] = 100 * mean * _ODR_HZ / CORE_HZ
-        elif name == "object":
-            found["cycles"]["object_median"] = played.median
-            found["cycles"]["object_worst"] = played.worst
-        elif name == "bursts":
-            found["cycles"]["burst"] = sum(played.cycles) / len(played.cycles) / _BURST
-        advance(1)
+            flashed = flash(pico.port, say=lambda line: None)
+            found["board"], found["flash_bytes"] = str(flashed.facts), flashed.sent_bytes
+            rest, found["import_s"] = heap_and_import(pico, "rest")
+            program = (firmware_package().parents[1] / _PROGRAM).read_text(encoding="utf-8")
+            found["least_heap_bytes"] = least_heap(pico, program, _SIGN, *_HEAPS)
+            flash(pico.port, say=lambda line: None, parts=["all"])
+            others = measured([name for name in CONFIGURATIONS if name != "rest"])
+            found["heap_bytes"] = {"rest": rest} | {n: heap_and_import(pico, n)[0] for n in others}
+            ends = {n: _same(pico, p) for n, p in measured(plays(workload()).items())}
+    found["golden"] = {name: same for name, (same, _) in ends.items()}
+    alone, by_object, bursts = (ends[name][1].cycles for name in ("rest", "object", "bursts"))
+    found["cycles"] = {
+        **{"median": float(median(alone)), "worst": max(alone)},
+        **{"object_median": float(median(by_object)), "object_worst": max(by_object)},
+        "burst": sum(bursts) / len(bursts) / _BURST,
+    }
+    found["share_percent"] = 100 * sum(alone) / len(alone) * _ODR_HZ / CORE_HZ
+    found["frozen"] = {}
+    with suppress(MissingRuntime), EmulatedPico(find_pico(_FROZEN)) as pico:
+        some = plays(workload(_FROZEN_ROWS))
+        found["frozen"] = {name: _same(pico, play)[0] for name, play in some.items()}
+    return found | {"limits": verdicts(found, LIMITS)}
 
 
 def _same(pico: EmulatedPico, play: Play) -> tuple[bool, Played]:
@@ -272,23 +231,11 @@ def model() -> bytes:
     return encoded(build_model(slots, Scales("MPU-6050", 100.0, 131.0, 16384.0, 340.0, 36.53)))
 
 
-def second_program() -> str:
-    """The text of the example that keeps what it learned."""
-    checkout = firmware_package().parents[1]
-    return (checkout / _PROGRAM).read_text(encoding="utf-8")
-
-
 def in_markdown(found: Mapping[str, Any]) -> str:
     """What it must be, heap by part, and the modes that gave equal numbers."""
     heap = table(["with", "heap, bytes"], [[k, number(v)] for k, v in found["heap_bytes"].items()])
-    modes = [
-        [mode, _yes(equal), _yes(found["frozen"].get(mode))]
-        for mode, equal in found["golden"].items()
-    ]
+    said, frozen = {None: "no image here", True: "yes", False: "**no**"}, found["frozen"]
+    modes = [[m, said[same], said[frozen.get(m)]] for m, same in found["golden"].items()]
     same = table(["mode", "to the last bit as on the host", "frozen into the image"], modes)
     head = f"# {found['board']}\n\nEmulated, with {found['firmware']}.\n"
     return "\n".join([head, limits_table(found["limits"]), heap, same])
-
-
-def _yes(equal: bool | None) -> str:
-    return "no image here" if equal is None else "yes" if equal else "**no**"

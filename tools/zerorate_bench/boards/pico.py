@@ -23,7 +23,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from importlib.resources import files
 from pathlib import Path
-from statistics import median
 from typing import Any
 
 import numpy as np
@@ -62,10 +61,9 @@ def boards_folder() -> Path:
     named = os.environ.get(VARIABLE)
     if not named:
         raise MissingRuntime(f"{VARIABLE} names no folder with boards' firmware")
-    folder = Path(named)
-    if not folder.is_dir():
+    if not Path(named).is_dir():
         raise MissingRuntime(f"{VARIABLE} names {named}, which is no folder")
-    return folder
+    return Path(named)
 
 
 def find_pico(firmware: str = "RPI_PICO-*.bin") -> PicoParts:
@@ -113,31 +111,25 @@ class EmulatedPico:
         ours, theirs = socket.socketpair()
         self._control = ours.makefile("rw", encoding="utf-8")
         ours.close()
-        self._process = self._started(parts, list(bias_lsb), theirs)
-        self._closed = threading.Event()
-        for work in (self._to_board, self._from_board):
-            threading.Thread(target=work, daemon=True).start()
-
-    def _started(
-        self, parts: PicoParts, bias: list[int], control: socket.socket
-    ) -> subprocess.Popen[bytes]:
         options = {
             "rp2040js": str(parts.package / "dist" / "esm" / "index.js"),
             "bootrom": str(parts.bootrom),
             "firmware": str(parts.firmware),
-            "bias": bias,
-            "control": control.fileno(),
+            "bias": [*bias_lsb],
+            "control": theirs.fileno(),
         }
-        command = [*node_command(), "--max-semi-space-size=32", str(_HERE / "pico.mjs")]
-        process = subprocess.Popen(
-            [*command, json.dumps(options)],
+        program = ["--max-semi-space-size=32", str(_HERE / "pico.mjs"), json.dumps(options)]
+        self._process = subprocess.Popen(
+            [*node_command(), *program],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             bufsize=0,
-            pass_fds=[control.fileno()],
+            pass_fds=[theirs.fileno()],
         )
-        control.close()
-        return process
+        theirs.close()
+        self._closed = threading.Event()
+        for work in (self._to_board, self._from_board):
+            threading.Thread(target=work, daemon=True).start()
 
     def __enter__(self) -> EmulatedPico:
         return self
@@ -218,7 +210,7 @@ class Play:
         """A corrector as the play begins with."""
         made = Corrector(Sensor(*self.sensor), **self.options)
         if self.state is not None:
-            made.state[:] = array("i", [int(word) for word in self.state])
+            made.state[:] = array("i", self.state.tolist())
         return made
 
 
@@ -228,16 +220,6 @@ class Played:
 
     data: bytes
     cycles: tuple[int, ...] = ()
-
-    @property
-    def median(self) -> float:
-        """Cycles of the median call."""
-        return float(median(self.cycles))
-
-    @property
-    def worst(self) -> int:
-        """Cycles of the longest call."""
-        return max(self.cycles)
 
 
 def on_pico(pico: EmulatedPico, play: Play) -> Played:
@@ -263,20 +245,17 @@ def on_host(play: Play) -> Played:
         effects.load(play.model, corrector.sensor)
         effects.refine()
         corrector.use_model(effects)
-    left = array("i")
-    rows = [array("i", [int(word) for word in row]) for row in play.rows]
-    if play.at_once > 1:
+    left, rows, size = array("i"), play.rows.astype(np.int32), play.at_once
+    if size > 1:
         take = Bursts(corrector).update
-        for at in range(0, len(rows) - play.at_once + 1, play.at_once):
-            frames = array("i")
-            for row in rows[at : at + play.at_once]:
-                frames.extend(row)
-            take(frames, play.at_once)
+        for at in range(0, len(rows) - size + 1, size):
+            frames = array("i", rows[at : at + size].tobytes())
+            take(frames, size)
             left.extend(frames)
     else:
         for row in rows:
-            sample = row[1:]
-            corrector.update(sample, row[0])
+            sample = array("i", row[1:].tobytes())
+            corrector.update(sample, int(row[0]))
             left.extend(sample)
     c = corrector
     for words in (c.settings, c.motion_settings, c.gravity_settings, c.motion, c.gravity, c.state):

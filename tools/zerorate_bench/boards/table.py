@@ -100,21 +100,16 @@ no heap.
 def page() -> str:
     """The text of docs/boards.md."""
     head = ["board", "runs", "heap free", "rest", "motion, gravity", "flash", "a sample", "verdict"]
-    rows = table(head, [_row(board) for board in BOARDS])
-    more = _more("rv32")
+    more, kept = _more("rv32"), needs()
     opening = _HEAD.format(rest_more=more[REST], both_more=sum(more[part] for part in _BOTH))
-    return "\n".join([opening, rows, _foot()]).rstrip() + "\n"
+    foot = _FOOT.format(**kept["cycles"], least_heap=kept["heap"]["least"])
+    return "\n".join([opening, table(head, [*map(_row, BOARDS)]) + foot])
 
 
 def _more(code: str) -> dict[str, int]:
     """Part -> bytes of this code that the Pico's has not."""
     bytes_of = code_bytes()
     return {part: size - bytes_of["thumb"][part] for part, size in bytes_of[code].items()}
-
-
-def _foot() -> str:
-    kept = needs()
-    return _FOOT.format(**kept["cycles"], least_heap=kept["heap"]["least"]).lstrip()
 
 
 def needs_of(found: Mapping[str, Any]) -> dict[str, dict[str, int]]:
@@ -131,10 +126,8 @@ def needs_of(found: Mapping[str, Any]) -> dict[str, dict[str, int]]:
 
 
 def _row(board: Board) -> list[str]:
-    rest, both = heap_needed([REST], board.code), heap_needed(_BOTH, board.code)
-    if board.code:
-        more = _more(board.code)
-        rest, both = rest + more[REST], both + sum(more[part] for part in _BOTH)
+    more = _more(board.code) if board.code else dict.fromkeys(_BOTH, 0)
+    rest, both = (heap_needed(p, board.code) + sum(more[m] for m in p) for p in ([REST], _BOTH))
     some = "" if board.measured else "some "
     cycles = needs()["cycles"]["object_median" if board.code else "bytecode"]
     return [

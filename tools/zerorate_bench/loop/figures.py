@@ -1,9 +1,11 @@
 """The figures that the loop must reach, each with its limit, its interval and whether it does."""
 
+from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
 from itertools import pairwise
+from operator import attrgetter
 from typing import Any, TypeVar
 
 import numpy as np
@@ -34,6 +36,8 @@ Looked = TypeVar("Looked")
 Rows = dict[str, list[Outcome]]
 #: How the names of figures begin that are of all devices together.
 _OF_ALL = ("2x, named", "2x-5x all", "groups told", "held-out error")
+_NAMED = (*CATALOGUE, KINK)
+_FOUND, _LISTED, _CONFIRMED = map(attrgetter, ("found", "events", "confirmed"))
 #: Ends of the probabilities that are counted together.
 _TOLD = (0.05, 0.35, 0.65, 1.0)
 
@@ -85,71 +89,67 @@ def share(
 def figures(outcomes: list[Outcome], whole: bool = True) -> list[Figure]:
     """Every figure that simulated devices and quiet recordings give. whole: whether these are all
     of them, so that what is said of all can be."""
-    every = list(_figures(outcomes))
+    rows: Rows = defaultdict(list)
+    for o in outcomes:
+        rows[o.device.row].append(o)
+    every = [f for f in _figures(rows) if f.devices]
+    every += _made_worse(outcomes)
     return every if whole else [f for f in every if not f.name.startswith(_OF_ALL)]
 
 
-def _figures(outcomes: list[Outcome]) -> Iterator[Figure]:
-    rows: Rows = {}
-    for o in outcomes:
-        rows.setdefault(o.device.row, []).append(o)
+def _figures(rows: Rows) -> Iterator[Figure]:
     yield from _where_nothing_is(rows)
     yield from _catalogue(rows)
-    yield from _outside(rows.get(OUT, []))
-    yield from _curves(rows.get(CURVE, []))
-    yield from _corners(rows.get(CORNERS, []))
-    yield from _unrecorded(rows)
+    for effect, some in _by_effect(rows[OUT]).items():
+        channels = OUTSIDE[effect]
+        name = f"outside, 2x {effect}: tied to {' and '.join(channels)}"
+        yield share(name, some, partial(Outcome.tied_to, channels=channels), 90.0)
+    yield from _curves(rows[CURVE])
+    yield share(f"step invented at {CORNERS}", rows[CORNERS], _LISTED, 1.0, True)
+    for n, limit in ((4, 10.0), (7, 2.0)):
+        group = rows[row := f"{HIDDEN}, {n} sessions"]
+        yield share(f"{row}: confirmed", group, _CONFIRMED, limit, at_most=True)
+        yield share(f"{row}: tentative", group, lambda o: bool(o.found) > o.confirmed, None)
+        yield share(f"{row}: said to be left", group, lambda o: o.excess, None)
     yield from _removed(rows)
     yield from _told(rows)
-    yield from _pairs(rows.get(TWO, []))
+    for effects, some in _by_effect(rows[TWO]).items():
+        yield share(f"2x {effects}: both named", some, _named, 90.0)
     yield from _many_widths(rows)
     yield from _from_files(rows)
-    yield from _made_worse(outcomes)
 
 
 def _where_nothing_is(rows: Rows) -> Iterator[Figure]:
-    noise = [o for row, group in rows.items() if row.startswith(NULL) for o in group]
-    if noise:
-        yield share("found in nothing, all kinds", noise, lambda o: bool(o.found), 0.5, True)
-    for row, group in rows.items():
-        if row.startswith(NULL) or row == REAL:
-            limit = 2.0 if row == REAL else 0.5
-            yield share(f"found in {row}", group, lambda o: bool(o.found), limit, at_most=True)
-    for row, group in rows.items():
-        if row.startswith(NULL) or row == REAL:
-            yield share(f"step listed in {row}", group, lambda o: o.events > 0, None)
-    if noise:
-        yield share("found, or found and withdrawn, in nothing", noise, _found_at_first, None)
-
-
-def _corners(group: list[Outcome]) -> Iterator[Figure]:
-    if group:
-        yield share(f"step invented at {CORNERS}", group, lambda o: o.events > 0, 1.0, True)
+    quiet = {row: of for row, of in rows.items() if row.startswith(NULL) or row == REAL}
+    noise = [o for row, group in quiet.items() if row != REAL for o in group]
+    yield share("found in nothing, all kinds", noise, _FOUND, 0.5, True)
+    for row, group in quiet.items():
+        yield share(f"found in {row}", group, _FOUND, 2.0 if row == REAL else 0.5, at_most=True)
+    for row, group in quiet.items():
+        yield share(f"step listed in {row}", group, _LISTED, None)
+    yield share("found, or found and withdrawn, in nothing", noise, _found_at_first, None)
 
 
 def _found_at_first(o: Outcome) -> bool:
     return bool(o.found or o.withdrawn)
 
 
-def _by_effect(group: list[Outcome]) -> dict[str, list[Outcome]]:
-    out: dict[str, list[Outcome]] = {}
+def _by_effect(group: list[Outcome]) -> Rows:
+    out: Rows = defaultdict(list)
     for o in group:
-        out.setdefault(" + ".join(e for e, _ in o.device.effects), []).append(o)
+        out[" + ".join(e for e, _ in o.device.effects)].append(o)
     return out
 
 
 def _catalogue(rows: Rows) -> Iterator[Figure]:
-    twice = _by_effect(rows.get("2x", []))
-    for effect in (*CATALOGUE, KINK):
-        if effect in twice:
-            limit = 80.0 if effect == KINK else 98.0
-            yield share(f"2x {effect}: found", twice[effect], lambda o: bool(o.found), limit)
-    found = [o for e in (*CATALOGUE, KINK) for o in twice.get(e, []) if o.found]
-    if found:
-        yield share("2x, named rightly of those found", found, _named, 95.0)
-    if STEP in twice:
-        yield share("2x step: listed", twice[STEP], lambda o: o.events > 0, None)
-        yield share("2x step: corrected", twice[STEP], lambda o: bool(o.found), 0.5, at_most=True)
+    twice, found = _by_effect(rows["2x"]), []
+    for effect in _NAMED:
+        limit = 80.0 if effect == KINK else 98.0
+        yield share(f"2x {effect}: found", twice[effect], _FOUND, limit)
+        found += [o for o in twice[effect] if o.found]
+    yield share("2x, named rightly of those found", found, _named, 95.0)
+    yield share("2x step: listed", twice[STEP], _LISTED, None)
+    yield share("2x step: corrected", twice[STEP], _FOUND, 0.5, at_most=True)
 
 
 def _named(o: Outcome) -> bool:
@@ -159,12 +159,11 @@ def _named(o: Outcome) -> bool:
 def _told(rows: Rows) -> Iterator[Figure]:
     """Groups by the chance that they were told with: how many are right, and how far that is from
     what was told."""
-    names = {*CATALOGUE, KINK}
-    some = [o for row in (*(f"{size:g}x" for size in SIZES), TWO) for o in rows.get(row, [])]
+    some = [o for row in (*(f"{size:g}x" for size in SIZES), TWO) for o in rows[row]]
     each = [
         (p, any(effect in group.split("+") for effect, _ in o.device.effects))
         for o in some
-        if names.issuperset(effect for effect, _ in o.device.effects)
+        if {effect for effect, _ in o.device.effects} <= {*_NAMED}
         for groups in o.told
         for group, p in groups.items()
     ]
@@ -178,53 +177,34 @@ def _told(rows: Rows) -> Iterator[Figure]:
             yield Figure(f"{name}: off", off, 10.0, True, len(own), unit="points")
 
 
-def _outside(group: list[Outcome]) -> Iterator[Figure]:
-    for effect, some in _by_effect(group).items():
-        channels = OUTSIDE[effect]
-        name = f"outside, 2x {effect}: tied to {' and '.join(channels)}"
-        yield share(name, some, partial(Outcome.tied_to, channels=channels), 90.0)
-
-
 def _curves(group: list[Outcome]) -> Iterator[Figure]:
     tied = partial(Outcome.tied_to, channels=(CURVE_OF,))
-    if group:
-        yield share(f"{CURVE}: tied to it", group, tied, 95.0)
+    yield share(f"{CURVE}: tied to it", group, tied, 95.0)
     for effect, some in _by_effect(group).items():
         name = f"{CURVE}, {effect}"
         yield share(f"{name}: tied to it", some, tied, None)
-        after = np.array([o.after for o in some if o.within])
-        if len(after):
-            yield _times(f"{name}: error after, mean", after.mean(), 1.2, len(after))
-
-
-def _unrecorded(rows: Rows) -> Iterator[Figure]:
-    for n, limit in ((4, 10.0), (7, 2.0)):
-        row = f"{HIDDEN}, {n} sessions"
-        if row in rows:
-            group = rows[row]
-            yield share(f"{row}: confirmed", group, lambda o: o.confirmed, limit, at_most=True)
-            yield share(f"{row}: tentative", group, lambda o: bool(o.found) > o.confirmed, None)
-            yield share(f"{row}: said to be left", group, lambda o: o.excess, None)
+        if after := [o.after for o in some if o.within]:
+            yield _times(f"{name}: error after, mean", float(np.mean(after)), 1.2, len(after))
 
 
 def _from_files(rows: Rows) -> Iterator[Figure]:
     for row, of in ROWS.items():
-        group, effect = rows.get(row, []), of.named
-        if group and effect:
+        group, effect = rows[row], of.named
+        if effect:
             yield share(f"{row}: named", group, partial(Outcome.named, effect=effect), 98.0)
             moved = [o.in_motion_mdps for o in group if o.in_motion_mdps is not None]
             if moved:
-                name = f"{row}: error in motion"
-                yield Figure(name, rms(np.array(moved)), 10.0, True, len(moved), unit="mdps")
-        elif group:
-            yield share(f"{row}: found", group, lambda o: bool(o.found), None)
-            yield share(f"{row}: confirmed", group, lambda o: o.confirmed, 0.5, at_most=True)
+                value = float(np.sqrt(np.mean(np.square(moved))))
+                yield Figure(f"{row}: error in motion", value, 10.0, True, len(moved), unit="mdps")
+        else:
+            yield share(f"{row}: found", group, _FOUND, None)
+            yield share(f"{row}: confirmed", group, _CONFIRMED, 0.5, at_most=True)
 
 
 def _removed(rows: Rows) -> Iterator[Figure]:
     """Mean of the error after over that of the noise alone, by effect and in all: every size counts
     alike, however many devices have it."""
-    for effect in (*CATALOGUE, KINK):
+    for effect in _NAMED:
         sizes = _after(rows, (effect,))
         if sizes:
             limit, number = 1.3 if effect == KINK else 1.1, sum(map(len, sizes))
@@ -239,23 +219,13 @@ def _removed(rows: Rows) -> Iterator[Figure]:
 
 def _after(rows: Rows, effects: Sequence[str]) -> list[np.ndarray]:
     """The errors after of devices with one of the effects, of each size that there is."""
-    groups = [rows.get(f"{size:g}x", []) for size in SIZES]
+    groups = [rows[f"{size:g}x"] for size in SIZES]
     each = [[o.after for o in group if o.device.effects[0][0] in effects] for group in groups]
     return [np.array(after) for after in each if after]
 
 
-def rms(values: np.ndarray) -> float:
-    """Root mean square."""
-    return float(np.sqrt(np.mean(np.square(values))))
-
-
 def _times(name: str, value: float, limit: float | None, devices: int) -> Figure:
     return Figure(name, float(value), limit, True, devices, unit="x noise")
-
-
-def _pairs(group: list[Outcome]) -> Iterator[Figure]:
-    for effects, some in _by_effect(group).items():
-        yield share(f"2x {effects}: both named", some, _named, 90.0)
 
 
 def _many_widths(rows: Rows) -> Iterator[Figure]:
@@ -263,8 +233,8 @@ def _many_widths(rows: Rows) -> Iterator[Figure]:
     each = {row: group for row, group in rows.items() if row.startswith(MANY_WIDTHS)}
     every = [o for group in each.values() for o in group]
     yield from _of_many_widths("", every, 95.0, 1.2)
-    yield from _of_many_widths(", told but for its start", rows.get(TOLD, []))
-    yield from _of_many_widths(", kept where it starts", rows.get(START_KNOWN, []), 95.0, 1.2)
+    yield from _of_many_widths(", told but for its start", rows[TOLD])
+    yield from _of_many_widths(", kept where it starts", rows[START_KNOWN], 95.0, 1.2)
     for row, group in each.items():
         yield from _of_many_widths(f", {row.split()[-1]} power-ons", group)
 
@@ -283,11 +253,9 @@ def _of_many_widths(
 
 
 def _made_worse(outcomes: list[Outcome]) -> Iterator[Figure]:
-    blocks = [o for o in outcomes if o.device.row not in (*ROWS, TOLD, CORNERS)]
-    with_recorded = [o for o in blocks if not o.device.row.startswith(HIDDEN)]
     name = "held-out error made worse by more than 2 %"
-    if with_recorded:
-        yield share(name, with_recorded, lambda o: o.worse, 2.0, at_most=True)
-    hidden = [o for o in blocks if o.device.row.startswith(HIDDEN)]
-    if hidden:
-        yield share(f"{name}, cause not recorded", hidden, lambda o: o.worse, 2.0, at_most=True)
+    blocks = [o for o in outcomes if o.device.row not in (*ROWS, TOLD, CORNERS)]
+    for hidden, which in ((False, name), (True, f"{name}, cause not recorded")):
+        some = [o for o in blocks if o.device.row.startswith(HIDDEN) == hidden]
+        if some:
+            yield share(which, some, lambda o: o.worse, 2.0, at_most=True)

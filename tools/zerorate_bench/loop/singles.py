@@ -6,7 +6,6 @@ hand; and a further power-on that nobody has seen.
 """
 
 import tempfile
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -17,6 +16,7 @@ import pyarrow.parquet as pq
 from numpy.typing import NDArray
 from scipy.stats import chi2, ncx2
 from zerorate_tools.closing import load
+from zerorate_tools.demo.broad import rms_mdps
 from zerorate_tools.loop.fit.regression import Regression
 from zerorate_tools.loop.read.sessions import Session
 from zerorate_tools.loop.report.report import report
@@ -25,7 +25,7 @@ from zerorate_tools.loop.verify.firmware import Firmware
 from zerorate_tools.loop.verify.run_kernels import run_and_prune
 from zerorate_tools.model import Model
 from zerorate_tools.recordings import Recording, open_recording, write_recording
-from zerorate_tools.replay.samples import Frames, frames_in_batches
+from zerorate_tools.replay.samples import frames_in_batches
 from zerorate_tools.simulate import simulate_sessions
 from zerorate_tools.simulate.device import Truth
 
@@ -34,7 +34,7 @@ from .devices import KINDS, describe
 from .figures import Figure, share
 from .trials import figure_table
 
-_WORSE = 1.02
+_WORSE, _MADE_WORSE = 1.02, "deployed and worse by more than 2 %"
 #: Seconds on either side of a step in which one listed is that step.
 _NEAR_S = 90.0
 #: Share of recordings in which a step may be invented.
@@ -65,11 +65,6 @@ class Single:
         """Whether what was deployed makes the error larger by more than 2 % there."""
         before, after = self.errors.get(where, (1.0, 1.0))
         return bool(self.kept) and after > _WORSE * before
-
-    @property
-    def found(self) -> bool:
-        """Whether anything is deployed."""
-        return bool(self.kept)
 
 
 def look_at_single(seed: int) -> Single:
@@ -134,26 +129,22 @@ def _held_out(
     for i, (log, (_, truth)) in enumerate(zip(logs, made)):
         own = names == log.name
         rows = np.searchsorted(truth.t_us, np.array(table["t_us"])[own])
-        held = split[own] == "test"
+        held, still = split[own] == "test", truth.still[rows]
         edges = [e["at_s"] for e in described["effect"] if e.get("session") == i + 1]
         stretch = np.searchsorted(edges, (truth.t_us[rows] - truth.t_us[0]) / 1e6)
         both = []
         for way in ("before", "after"):
             said = np.column_stack([np.array(table[f"bias_{way}_g{a}"])[own] for a in "xyz"])
             both.append((said - truth.bias_lsb[rows]) / 131.0)
-        for where, there in (("at rest", truth.still[rows]), ("in motion", ~truth.still[rows])):
-            if (held & there).any():
-                parts[where].append(_about(both, stretch, truth.still[rows] & held, held & there))
+        for where, there in (("at rest", held & still), ("in motion", held & ~still)):
+            if there.any():
+                parts[where].append(_about(both, stretch, still & held, there))
     return {
-        where: (_rms_mdps(before), _rms_mdps(after))
+        where: (rms_mdps(np.vstack(before)), rms_mdps(np.vstack(after)))
         for where, some in parts.items()
         if some
         for before, after in [zip(*some)]
     }
-
-
-def _rms_mdps(errors: Sequence[NDArray[np.float64]]) -> float:
-    return float(1e3 * np.sqrt((np.vstack(errors) ** 2).mean()))
 
 
 def _about(
@@ -182,29 +173,19 @@ def _further(model: Model, logs: list[Path], further: _Made) -> tuple[float, flo
             for frames in frames_in_batches(open_recording(log)):
                 device.run(frames)
         device.power_on()
-        parts = [device.run(f, _first(f, recording)) for f in frames_in_batches(recording)]
+        last_us = recording.columns["t_us"][0] + 1e6 * _LEARNED_S
+        parts = [device.run(f, f.t_us < last_us) for f in frames_in_batches(recording)]
         bias = np.vstack(parts) / 256.0
         error = (bias - truth.bias_lsb) / recording.scales.gyro_lsb_per_dps
         error = error[truth.t_us - truth.t_us[0] > 1e6 * _LEARNED_S]
-        errors.append(float(1e3 * np.sqrt((error**2).mean())))
+        errors.append(rms_mdps(error))
     return errors[0], errors[1]
-
-
-def _first(frames: Frames, recording: Recording) -> NDArray[np.bool_]:
-    """(n,) whether a sample is of the first minutes."""
-    return frames.t_us - recording.columns["t_us"][0] < 1e6 * _LEARNED_S
 
 
 def single_figures(singles: list[Single]) -> list[Figure]:
     """Shares made worse, and of steps listed and invented."""
     rows = [
-        share(
-            f"deployed and worse by more than 2 %, {where}",
-            singles,
-            partial(Single.worse, where=where),
-            1.0,
-            True,
-        )
+        share(f"{_MADE_WORSE}, {where}", singles, partial(Single.worse, where=where), 1.0, True)
         for where in ("at rest", "in motion", "a further power-on")
     ]
     for kind, what, limit in (("step", "RMS", 95.0), ("small step", "jump", None)):
@@ -217,7 +198,7 @@ def single_figures(singles: list[Single]) -> list[Figure]:
     rows.append(share("a step invented", singles, lambda s: s.invented > 0, 1.0, True))
     for kind in KINDS:
         own = [s for s in singles if s.kind == kind]
-        rows.append(share(f"{kind}: deployed anything", own, lambda s: s.found, None))
+        rows.append(share(f"{kind}: deployed anything", own, lambda s: bool(s.kept), None))
         for where in ("at rest", "a further power-on") if own else ():
             ratio = [np.divide(*s.errors[where][::-1]) for s in own]
             name = f"{kind}: error after over before, {where}, mean"
@@ -225,17 +206,10 @@ def single_figures(singles: list[Single]) -> list[Figure]:
     return rows
 
 
-def steps(devices: int) -> int:
-    """How often `run` advances."""
-    return devices
-
-
-def run(
-    devices: int, processes: int, resume: Path | None, advance: Callable[[float], None]
-) -> dict[str, Any]:
+def run(devices: int, processes: int, resume: Path | None) -> dict[str, Any]:
     """So many devices, of every kind alike: their figures, and what became of each, as plain
     values. resume: as of `outcomes`."""
-    each = list(outcomes(look_at_single, range(devices), processes, resume, advance))
+    each = list(outcomes(look_at_single, range(devices), processes, resume))
     singles = [Single(**row) for row in each]
     figures = [f.to_dict() for f in single_figures(singles)]
     return {"devices": devices, "figures": figures, "each": each}

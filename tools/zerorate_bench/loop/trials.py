@@ -2,9 +2,7 @@
 
 import os
 import tempfile
-from collections.abc import Callable, Iterator
 from itertools import product
-from os import PathLike
 from pathlib import Path
 from typing import Any
 
@@ -49,15 +47,6 @@ _ENDS_S, _LEAST_SHARE = 20.0, 95.0
 _BESIDE_S = 500.0
 #: Devices without an effect that the page names where one was found in them.
 _MOST_EXAMPLES = 20
-
-
-def figures_of(size: dict[str, Any]) -> list[Figure]:
-    """Time and memory beside their limits."""
-    return [
-        Figure(f"{SIZE}: seconds by the clock", size["seconds"], MOST_S, True, 1, unit="s"),
-        Figure(f"{SIZE}: seconds of processor", size["cpu_s"], None, True, 1, unit="s"),
-        Figure(f"{SIZE}: memory", size["gb"], MOST_GB, True, 1, unit="GB"),
-    ]
 
 
 def resting(
@@ -111,14 +100,12 @@ def rest_figures() -> list[Figure]:
 
 
 def run(
-    nulls: int = 200,
-    seeds: int = 20,
-    processes: int = 2,
-    *,
-    data: str | PathLike[str] | None = None,
-    resume: str | PathLike[str] | None = None,
-    rows: str | None = None,
-    advance: Callable[[float], None] = lambda n: None,
+    nulls: int,
+    seeds: int,
+    processes: int,
+    data: Path | None,
+    resume: Path | None,
+    rows: str | None,
 ) -> dict[str, Any]:
     """Run it and return the figures and tables as plain values; `in_markdown` makes them readable.
 
@@ -127,58 +114,57 @@ def run(
     broken off goes on from; rows: only devices whose key holds this text, and
     the time and memory where their row does.
     """
-    folder = Path(data) if data else data_folder()
+    folder = data or data_folder()
     with tempfile.TemporaryDirectory() as scratch:
         quiet = write_blocks(folder, Path(scratch)) if folder and folder.is_dir() else []
         os.environ[FOLDER] = scratch
         every = [*devices(nulls, seeds, quiet), *file_devices(-(-seeds // 2))]
         every = [d for d in every if not rows or rows in d.key]
-        seen = list(looked_at(every, processes, Path(resume) if resume else None, advance))
+        seen = [*map(_outcome, outcomes(_look, every, processes, resume))]
     found = figures(seen, whole=not rows)
     if not rows:
         found += rest_figures()
     if not rows or rows in SIZE:
-        found += figures_of(close_cost(_WRITE))
-    result: dict[str, Any] = {"devices": len(seen), "machine": machine()}
-    result["cpu_s_a_device"] = sum(o.cpu_s for o in seen) / max(len(seen), 1)
-    result["figures"] = [f.to_dict() for f in found]
-    result["false_alarms"] = _examples(seen)
-    return result
+        cost = close_cost(_WRITE)
+        found += [
+            Figure(f"{SIZE}: seconds by the clock", cost["seconds"], MOST_S, True, 1, unit="s"),
+            Figure(f"{SIZE}: seconds of processor", cost["cpu_s"], None, True, 1, unit="s"),
+            Figure(f"{SIZE}: memory", cost["gb"], MOST_GB, True, 1, unit="GB"),
+        ]
+    return {
+        "devices": len(seen),
+        "machine": machine(),
+        "cpu_s_a_device": sum(o.cpu_s for o in seen) / max(len(seen), 1),
+        "figures": [f.to_dict() for f in found],
+        # [row, seed, names, how sure] of devices without an effect in which one was found
+        "false_alarms": [
+            [o.device.row, o.device.seed, o.found, o.confidence]
+            for o in seen
+            if o.found and not o.device.effects
+        ][:_MOST_EXAMPLES],
+    }
 
 
-def looked_at(
-    every: list[Device],
-    processes: int = 1,
-    kept: Path | None = None,
-    advance: Callable[[float], None] = lambda n: None,
-) -> Iterator[Outcome]:
-    """The outcome of every device; what `kept` has already is not looked at again."""
-    for row in outcomes(_look, every, processes, kept, advance):
-        device = row.pop("device")
-        device["effects"] = tuple((name, size) for name, size in device["effects"])
-        yield Outcome(Device(**device), **row)
+def _outcome(row: dict[str, Any]) -> Outcome:
+    """An outcome of its plain values."""
+    device = row["device"]
+    effects = tuple((name, size) for name, size in device["effects"])
+    return Outcome(**row | {"device": Device(**device | {"effects": effects})})
 
 
 def _look(device: Device) -> Outcome:
     return look_at_files(device) if device.row in ROWS else run_trial(device)
 
 
-def _examples(outcomes: list[Outcome]) -> list[list[Any]]:
-    """[row, seed, names] of devices without an effect in which one was found."""
-    nothing = [o for o in outcomes if not o.device.effects and o.found]
-    return [[o.device.row, o.device.seed, o.found, o.confidence] for o in nothing[:_MOST_EXAMPLES]]
-
-
 def in_markdown(result: dict[str, Any]) -> str:
     """The figures as Markdown, the missed ones first."""
     missed = [f["name"] for f in result["figures"] if f["met"] is False]
     limits = sum(f["met"] is not None for f in result["figures"])
-    head = f"{len(missed)} of {limits} figures missed"
-    head_line = f"# What closing the loop finds, on {result['devices']} devices"
-    parts = [head_line, "", "`zerorate bench loop` wrote this page. " + machine_line()]
-    parts += [f"{head}: {'; '.join(missed)}." if missed else "Every figure is reached.", ""]
-    parts.append(figure_table(result["figures"]))
-    return "\n".join(parts)
+    head = f"{len(missed)} of {limits} figures missed: {'; '.join(missed)}."
+    parts = [f"# What closing the loop finds, on {result['devices']} devices", ""]
+    parts += ["`zerorate bench loop` wrote this page. " + machine_line()]
+    parts += [head if missed else "Every figure is reached.", ""]
+    return "\n".join([*parts, figure_table(result["figures"])])
 
 
 def renewed(page: str, figures: list[dict[str, Any]]) -> str:
@@ -205,21 +191,12 @@ def _name(line: str) -> str:
 def figure_table(figures: list[dict[str, Any]]) -> str:
     """A row a figure, as `Figure.to_dict` has it."""
     header = ("figure", "measured", "limit", "reached", "95 % interval", "devices")
-    return table(header, [_cells(**f) for f in figures])
-
-
-def _cells(
-    name: str,
-    value: float,
-    limit: float | None,
-    at_most: bool,
-    devices: int,
-    low: float | None,
-    high: float | None,
-    unit: str,
-    met: bool | None,
-) -> tuple[str, str, str, str, str, int]:
-    measured = f"{value:.1f}" if unit == "%" else f"{value:.3f} {unit}"
-    bound = "" if limit is None else f"at {'most' if at_most else 'least'} {limit:g}"
-    span = "" if low is None else f"{low:.1f}-{high:.1f}"
-    return name, measured, bound, {None: "", True: "yes", False: "NO"}[met], span, devices
+    rows = []
+    for f in figures:
+        value, unit, limit, low = f["value"], f["unit"], f["limit"], f["low"]
+        measured = f"{value:.1f}" if unit == "%" else f"{value:.3f} {unit}"
+        bound = "" if limit is None else f"at {'most' if f['at_most'] else 'least'} {limit:g}"
+        span = "" if low is None else f"{low:.1f}-{f['high']:.1f}"
+        met = {None: "", True: "yes", False: "NO"}[f["met"]]
+        rows.append([f["name"], measured, bound, met, span, f["devices"]])
+    return table(header, rows)

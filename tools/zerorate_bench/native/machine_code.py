@@ -176,12 +176,18 @@ def _linked(folder: Path, text: str, how: Processor, base: int, aims: tuple[str,
 
 def problems(code: bytes, processor: str) -> Iterator[str]:
     """What reads or addresses bytes beside the code, by the instruction's own coding."""
-    at = 0
-    while at + 1 < len(code):
-        (word,) = struct.unpack_from("<H", code, at)
-        wide = word >> 11 in (29, 30, 31) if processor == "thumb" else word & 3 == 3
-        if processor == "thumb" and (word >> 11 == 9 or word >> 11 == 20):
+    for at, word in instructions(code, processor):
+        if processor == "thumb" and word >> 11 in (9, 20):
             yield f"the instruction at {at} reads beside the code"
         if processor == "rv32" and word & 0x7F == 0x17:
             yield f"the instruction at {at} addresses from where it stands"
+
+
+def instructions(code: bytes, processor: str) -> Iterator[tuple[int, int]]:
+    """Where each instruction lies, and its first half word."""
+    at = 0
+    while at + 1 < len(code):
+        (word,) = struct.unpack_from("<H", code, at)
+        yield at, word
+        wide = word >> 11 in (0b11101, 0b11110, 0b11111) if processor == "thumb" else word & 3 == 3
         at += 4 if wide else 2

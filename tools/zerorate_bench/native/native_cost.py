@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import struct
 from array import array
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from statistics import mean, median
 from typing import Any
@@ -28,7 +28,7 @@ from zerorate_tools.simulate import simulate
 from zerorate_bench.native.parts import BURST, PARTS
 
 from ..workload import CYCLE, Workload
-from .machine_code import PROCESSORS, machine_code
+from .machine_code import PROCESSORS, instructions, machine_code
 from .native_files import ENTERED
 
 _CODE, _END, _STACK, _DATA = 0x10000, 0x30000, 0x80000, 0x100000
@@ -48,7 +48,7 @@ class Emulated:
             import unicorn as u
         except ImportError:
             raise MissingRuntime("machine code is run by unicorn: pip install unicorn") from None
-        self._thumb = processor == "thumb"
+        self._processor, self._thumb = processor, processor == "thumb"
         self._at, self._code = at, code
         if self._thumb:
             from unicorn import arm_const as r
@@ -109,7 +109,7 @@ class Emulated:
         key = at, size
         if key not in self._blocks:
             code = self._code[at - self._at : at - self._at + size]
-            self._blocks[key] = _cycles_of(code) if self._thumb else (_rv32_count(code), 0, 0)
+            self._blocks[key] = _cycles_of(code, self._processor)
         if self._expected and at != self._expected:
             self.cycles += self._jump
         count, cycles, self._jump = self._blocks[key]
@@ -118,27 +118,15 @@ class Emulated:
         self._expected = at + size
 
 
-def _rv32_count(code: bytes) -> int:
-    count = at = 0
-    while at < len(code):
-        at += 4 if code[at] & 3 == 3 else 2
-        count += 1
-    return count
-
-
-def _cycles_of(code: bytes) -> tuple[int, int, int]:
+def _cycles_of(code: bytes, processor: str) -> tuple[int, int, int]:
     """(instructions, cycles, further cycles when the last one's condition holds) of a block.
 
-    Of straight Thumb code on a Cortex-M0+ without wait states (ARM DDI 0484C, table 3-1).
+    Cycles of straight Thumb code on a Cortex-M0+ without wait states (ARM DDI 0484C, table 3-1).
     """
-    count = cycles = at = further = 0
-    while at < len(code):
-        (word,) = struct.unpack_from("<H", code, at)
-        further = int(word >> 12 == 0b1101)
-        cycles += _cycles(word)
-        count += 1
-        at += 4 if word >> 11 in (0b11101, 0b11110, 0b11111) else 2
-    return count, cycles, further
+    words = [word for _, word in instructions(code, processor)]
+    if processor != "thumb":
+        return len(words), 0, 0
+    return len(words), sum(map(_cycles, words)), int(words[-1] >> 12 == 0b1101)
 
 
 def _cycles(word: int) -> int:
@@ -188,8 +176,8 @@ def native_cost(work: Workload) -> dict[str, dict[str, Any]]:
     """
     return {
         processor: {
-            "alone": _against_c(work, processor, "rest", 1),
-            "bursts": _against_c(work, processor, "rest", AT_ONCE),
+            "alone": _against_c(work, processor, 1),
+            "bursts": _against_c(work, processor, AT_ONCE),
         }
         for processor in PROCESSORS
     }
@@ -213,11 +201,8 @@ def source_cost() -> dict[str, dict[str, float]]:
         "motion": (motion_state(motion), motion),
         "gravity": (gravity_state(gravity), gravity),
     }
-    package = firmware_package()
-    return {
-        part: _cost(emulated(package, part, "thumb"), *arrays, frames, _FROM)
-        for part, arrays in states.items()
-    }
+    code = {part: emulated(firmware_package(), part, "thumb") for part in states}
+    return {part: _cost(code[part], *arrays, frames, _FROM) for part, arrays in states.items()}
 
 
 def effects_cost() -> dict[str, dict[str, float]]:
@@ -256,41 +241,30 @@ def _cost(
     return {"instructions": mean(instructions), "cycles": mean(cycles), "cycles_worst": max(cycles)}
 
 
-def _against_c(work: Workload, processor: str, part: str, at_once: int) -> dict[str, Any]:
+def _against_c(work: Workload, processor: str, at_once: int) -> dict[str, Any]:
     package = firmware_package()
-    ours = _run(emulated(package, part, processor), work, at_once)
-    yardstick = machine_code(Kernels(package), part, processor, fast=True)
-    theirs = _run(Emulated(processor, yardstick), work, at_once)
-    if ours[0] != theirs[0]:
-        raise ZerorateError(f"two compilations of {part} differ on {processor}: nothing compared")
-    counts, cycles = ours[1]
-    found: dict[str, Any] = {"instructions": mean(counts), "instructions_c": mean(theirs[1][0])}
+    yardstick = machine_code(Kernels(package), "rest", processor, fast=True)
+    state, counts, cycles = _run(emulated(package, "rest", processor), work, at_once)
+    state_c, counts_c, _ = _run(Emulated(processor, yardstick), work, at_once)
+    if state != state_c:
+        raise ZerorateError(f"two compilations of rest differ on {processor}: nothing compared")
+    found: dict[str, Any] = {"instructions": mean(counts), "instructions_c": mean(counts_c)}
     found |= {"median": median(counts), "worst": max(counts)}
     if processor == "thumb":
         found |= {"cycles": median(cycles), "cycles_worst": max(cycles)}
     return found
 
 
-def _run(
-    code: Emulated, work: Workload, at_once: int
-) -> tuple[bytes, tuple[list[float], list[float]]]:
-    """(final state, (instructions of a sample of each call, cycles of a sample of each call))."""
+def _run(code: Emulated, work: Workload, at_once: int) -> tuple[bytes, list[float], list[float]]:
+    """Final state, and instructions and cycles of a sample of each call."""
     state, settings = (array("i", words.tobytes()) for words in (work.state, work.settings))
     counts, cycles = [], []
-    for count in _calls(code, work, at_once, state, settings):
-        counts.append(code.instructions / count)
-        cycles.append(code.cycles / count)
-    return state.tobytes(), (counts, cycles)
-
-
-def _calls(
-    code: Emulated, work: Workload, at_once: int, s: array[int], c: array[int]
-) -> Iterator[int]:
-    """Make each call and yield how many samples it took."""
     for first in range(0, CYCLE, at_once):
         rows = work.rows[first : min(first + at_once, CYCLE)]
         if at_once == 1:
-            code(s, c, array("i", rows[0, 1:].tobytes()), int(rows[0, 0]))
+            code(state, settings, array("i", rows[0, 1:].tobytes()), int(rows[0, 0]))
         else:
-            code(s, c, array("i", rows.tobytes()), BURST + len(rows))
-        yield len(rows)
+            code(state, settings, array("i", rows.tobytes()), BURST + len(rows))
+        counts.append(code.instructions / len(rows))
+        cycles.append(code.cycles / len(rows))
+    return state.tobytes(), counts, cycles

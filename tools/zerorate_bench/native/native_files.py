@@ -7,6 +7,7 @@ Beside it what `mip` installs from: a package.json a folder for the rest path, P
 import json
 import struct
 from collections.abc import Callable, Iterator, Mapping
+from itertools import product
 from pathlib import Path, PurePosixPath
 from typing import Any
 
@@ -137,15 +138,11 @@ def stale(package: Path) -> list[Path]:
 def manifests() -> Iterator[tuple[PurePosixPath, str]]:
     """(path below a checkout, text) of every file that mip installs from."""
     rest = part_files([REST])
-    for part in BOARD_PARTS:
-        files = rest if part == REST else part_files([REST, part])
-        for package, folder in FOLDERS.items():
-            names = [str(name) for name in files if name.parts[0] == package]
-            if part != REST:
-                names = [name for name in names if PurePosixPath(name) not in rest]
-            if names:
-                name = "package.json" if part == REST else f"{part}.json"
-                yield PurePosixPath(folder, name), _mip_text(names)
+    for part, (package, folder) in product(BOARD_PARTS, FOLDERS.items()):
+        files = rest if part == REST else [f for f in part_files([REST, part]) if f not in rest]
+        if names := [str(name) for name in files if name.parts[0] == package]:
+            name = "package.json" if part == REST else f"{part}.json"
+            yield PurePosixPath(folder, name), _mip_text(names)
 
 
 def _mip_text(names: list[str]) -> str:

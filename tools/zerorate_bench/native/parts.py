@@ -157,13 +157,9 @@ def _sparse(words: Sequence[int]) -> tuple[int, bytes, bytes]:
     return len(words), short, whole
 
 
-def _corrector() -> Corrector:
-    limits = {"window_s": 0.08, "segment_s": 0.16, "promote_s": 0.1, "fit_s": 0.04, **_SHAKY}
-    return Corrector(Sensor(), bins=4, short=1, long=2, **limits)
-
-
 def _rest() -> tuple[Any, ...]:
-    corrector = _corrector()
+    limits = {"window_s": 0.08, "segment_s": 0.16, "promote_s": 0.1, "fit_s": 0.04, **_SHAKY}
+    corrector = Corrector(Sensor(), bins=4, short=1, long=2, **limits)
     return 2, BURST + 10, 8 * 10, 5, corrector.state, corrector.settings, [0] * (8 * 10)
 
 
