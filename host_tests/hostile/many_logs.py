@@ -23,11 +23,12 @@ import sys
 import tempfile
 import traceback
 import warnings
+import zipfile
 from collections import Counter
 from pathlib import Path
 from types import SimpleNamespace
 
-from zerorate_bench.foreign_logs import arrays, flights, phones, robots, sensors
+from zerorate_bench.foreign_logs import arrays, flights, robots, sensors
 from zerorate_bench.foreign_logs.world import World
 from zerorate_tools.bounds import ALONE, MEMORY_MB
 from zerorate_tools.errors import ZerorateError
@@ -50,7 +51,9 @@ def own(folder, world):
 
 
 def zipped(folder, world):
-    return phones.zipped(folder / "in.zip", [robots.euroc(folder, world)], folder)
+    with zipfile.ZipFile(folder / "in.zip", "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.write(robots.euroc(folder, world), "data.csv")
+    return folder / "in.zip"
 
 
 def gz(folder, world):

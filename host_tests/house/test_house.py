@@ -162,7 +162,7 @@ CALLED_BY_OTHERS = {
 def test_every_function_and_class_is_used(repository):
     """One walk of all files, about 8 s of CPU time."""
     # what a decorator registers is called by its list
-    vulture = Vulture(ignore_decorators=["@log", "@command"])
+    vulture = Vulture(ignore_decorators=["@command"])
     vulture.scavenge([str(repository / folder) for folder in CODE], exclude=GENERATED)
     kinds = ("function", "method", "class", "property", "unreachable_code")
     unused = {

@@ -125,7 +125,14 @@ def sections(found: Mapping[str, Any]) -> Iterator[str]:
     """The tables of a sample, of memory and of the replay, one below the other."""
     yield "## A sample\n"
     yield _HOW
-    yield table(_HEAD, list(_per_sample(found)))
+    rows = []
+    for processor, ways in (found["native"] or {}).items():
+        for how, one in ways.items():
+            mean, c = one["instructions"], one["instructions_c"]
+            cycles = [f"{one[name]:,.0f}" if name in one else "" for name in _CYCLES]
+            row = [f"{mean:,.0f}", f"{c:,.0f}", f"{mean / c:.2f} x", f"{one['worst']:,.0f}"]
+            rows.append([f"{_NAMES[processor]}, {how}", *row, *cycles])
+    yield table(_HEAD, rows)
     yield "Bytes of machine code, each part loaded by who uses it:\n"
     sizes: dict[str, dict[str, int]] = found["code_bytes"] or {}
     parts: dict[str, int] = next(iter(sizes.values()), {})
@@ -151,15 +158,6 @@ def sections(found: Mapping[str, Any]) -> Iterator[str]:
     yield table(["us a sample", "`motion=False, gravity=False`", "learning in motion, too"], rows)
     for name, why in found["left_out"].items():
         yield f"Left out: {name}: {why}.\n"
-
-
-def _per_sample(found: Mapping[str, Any]) -> Iterator[list[str]]:
-    for processor, figures in (found["native"] or {}).items():
-        for how, one in figures.items():
-            mean, c = one["instructions"], one["instructions_c"]
-            cycles = [f"{one[name]:,.0f}" if name in one else "" for name in _CYCLES]
-            row = [f"{mean:,.0f}", f"{c:,.0f}", f"{mean / c:.2f} x", f"{one['worst']:,.0f}"]
-            yield [f"{_NAMES[processor]}, {how}", *row, *cycles]
 
 
 def _memory(found: Mapping[str, Any]) -> Iterator[list[str]]:

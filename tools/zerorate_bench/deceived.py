@@ -1,10 +1,6 @@
-"""How often the firmware is sure of a wrong bias in worlds whose turns look like one.
-
-zerorate bench deceived --seeds 50 --out docs/deceived-figures.md
-"""
+"""How often the firmware is sure of a wrong bias in worlds whose turns look like one."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 from zlib import crc32
@@ -208,14 +204,8 @@ After 90 s or more of rest a knock moves the bias by 0.2 to 3 dps on every axis.
 """
 
 
-@dataclass(frozen=True)
-class Run:
-    """A recording, and the truth: bias_dps and still, (n, 3) and (n,); judged from that sample."""
-
-    recording: Recording
-    bias_dps: Array
-    still: NDArray[np.bool_]
-    first: int
+#: A recording, and the truth: bias in dps and rest, (n, 3) and (n,); judged from that sample on.
+Run = tuple[Recording, Array, NDArray[np.bool_], int]
 
 
 def made(name: str, seed: int, known: bool) -> Run:
@@ -239,7 +229,7 @@ def made(name: str, seed: int, known: bool) -> Run:
     if name == _KNOCK:
         bias[first:] += rng.choice([-1, 1], 3) * rng.uniform(0.2, 3.0, 3)
     recording = _recorded(rng, hz, rate + bias, accel, name)
-    return Run(recording, bias, np.logical_not(rate.any(axis=1)), first)
+    return recording, bias, np.logical_not(rate.any(axis=1)), first
 
 
 def _rests(start: Start) -> Bout:
@@ -270,14 +260,13 @@ def _recorded(
 
 def judged(run: Run) -> dict[str, Any]:
     """sure_s: longest of the axes' times sure of a wrong bias; worst_mdps; honest: a share."""
-    bias, sigma, source = Decision().states(given(run.recording))
-    part = slice(run.first, None)
-    error, sigma = np.abs(bias - run.bias_dps)[part], sigma[part]
-    known = source[part] > 0
+    recording, truth_dps, _, first = run
+    bias, sigma, source = (of[first:] for of in Decision().states(given(recording)))
+    error, known = np.abs(bias - truth_dps[first:]), source > 0
     wrong = known & (error > SIGMAS * sigma) & (error > OFF_DPS)
     inside = (error < 2 * sigma)[known]
     return {
-        "sure_s": float(wrong.sum(axis=0).max() / run.recording.scales.odr_hz),
+        "sure_s": float(wrong.sum(axis=0).max() / recording.scales.odr_hz),
         "worst_mdps": float(1000 * error[wrong].max()) if wrong.any() else 0.0,
         "honest": float(inside.mean()) if inside.size else 1.0,
     }
@@ -285,10 +274,11 @@ def judged(run: Run) -> dict[str, Any]:
 
 def followed(run: Run) -> bool:
     """Whether the bias is within 20 mdps after 90 s of rest."""
-    bias = Decision().states(given(run.recording))[0]
-    rested_s = np.cumsum(run.still[run.first :]) / run.recording.scales.odr_hz
-    at = run.first + int(np.searchsorted(rested_s, _FOLLOWED_S))
-    return bool(np.all(np.abs(bias - run.bias_dps)[at] < OFF_DPS))
+    recording, truth_dps, still, first = run
+    bias = Decision().states(given(recording))[0]
+    rested_s = np.cumsum(still[first:]) / recording.scales.odr_hz
+    at = first + int(np.searchsorted(rested_s, _FOLLOWED_S))
+    return bool(np.all(np.abs(bias - truth_dps)[at] < OFF_DPS))
 
 
 def run(seeds: int) -> dict[str, Any]:

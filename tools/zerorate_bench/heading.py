@@ -4,7 +4,7 @@ VQF runs with its own bias estimation off. The bias is that of the first rest. T
 against the optics, over the motion, after a constant turn between their frame and the sensor's.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -43,14 +43,13 @@ def run(data: list[Path]) -> dict[str, Any]:
     """Trial -> degrees before and after, fitted on the other trials of its group and on its own
     first half; and whether both groups together are refused. Raises ZerorateError."""
     every = {t.name[:2]: t for folder in data for t in trials(folder)}
-    with TemporaryDirectory() as scratch:
-        moving = {n: moving_in(t, Path(scratch) / f"{n}.parquet") for n, t in every.items()}
+    moving = moving_in(every)
     found: dict[str, Any] = {"others": {}, "halves": {}, **_refused(list(moving.values()))}
     seen = {n: _seen(t, moving[n]) for n, t in every.items()}
     found["optics"] = _by_optics(seen, found["refused"])
-    known = [(k, group, n) for k, group in enumerate(GROUPS) for n in group if n in every]
-    for number, group, name in measured(known):
-        others = [n for n in group if n in every and n != name]
+    known = [(k, n) for k, group in enumerate(GROUPS) for n in group if n in every]
+    for number, name in measured(known):
+        others = sorted(others_of(name, every))
         shown, optics = (
             by_windows([of[n] for n in others], []) if others else None for of in (moving, seen)
         )
@@ -61,14 +60,24 @@ def run(data: list[Path]) -> dict[str, Any]:
     return found
 
 
-def moving_in(trial: Trial, path: Path) -> Moving:
-    """What the trial's motion shows; path: where its recording is written for that."""
-    recording = trial.recording()
-    scales = replace(recording.scales, temp_lsb_per_degc=None, temp_offset_degc=None)
-    write_recording(replace(recording, scales=scales), path)
-    moving = moving_of(path)
-    assert moving is not None, "a trial moves"
-    return moving
+def others_of(name: str, every: Mapping[str, object]) -> list[str]:
+    """The other trials of a trial's group, by the first two letters of their names."""
+    group = next((g for g in GROUPS if name[:2] in g), ())
+    return [n for n in every if n != name and n[:2] in group]
+
+
+def moving_in(every: Mapping[str, Trial]) -> dict[str, Moving]:
+    """What each trial's motion shows."""
+    found = {}
+    with TemporaryDirectory() as scratch:
+        for name, trial in every.items():
+            path, recording = Path(scratch) / f"{name}.parquet", trial.recording()
+            scales = replace(recording.scales, temp_lsb_per_degc=None, temp_offset_degc=None)
+            write_recording(replace(recording, scales=scales), path)
+            moving = moving_of(path)
+            assert moving is not None, "a trial moves"
+            found[name] = moving
+    return found
 
 
 def _refused(moving: list[Moving]) -> dict[str, list[Any]]:

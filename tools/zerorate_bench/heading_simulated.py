@@ -1,7 +1,4 @@
-"""Scale factors, cross-axis sensitivities and turned axes in simulated motion: found, and honest.
-
-zerorate bench heading-simulated --devices 20 --out docs/heading-simulated.md
-"""
+"""Scale factors, cross-axis terms and turned axes in simulated motion: found, and honest."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass

@@ -1,7 +1,4 @@
-"""Bias without rest: both sources and the decision beside vqf, simulated and on BROAD.
-
-zerorate bench motion --data FOLDER/broad --json motion.json
-"""
+"""Bias without rest: both sources and the decision beside vqf, simulated and on BROAD."""
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence

@@ -1,7 +1,4 @@
-"""Scale and axes that the firmware's filter in motion finds itself: what applying them would do.
-
-zerorate bench own-axes --data FOLDER [FOLDER ...] --out docs/own-axes.md
-"""
+"""Scale and axes that the firmware's filter in motion finds itself: what applying them would do."""
 
 from __future__ import annotations
 
@@ -21,7 +18,7 @@ from zerorate_tools.layout import MOTION
 from zerorate_tools.peers import given
 from zerorate_tools.recordings import Recording
 
-from .heading import GROUPS, heading_error_deg
+from .heading import heading_error_deg, others_of
 from .heading_simulated import Case, heading_lost_deg, recorded
 from .peers import Source
 from .tables import measured, table
@@ -94,8 +91,7 @@ def _on_broad(folders: Sequence[Path]) -> dict[str, list[float]]:
         at = np.flatnonzero(trial.moving)
         first = trial.part(slice(int((at[0] + at[-1]) / 2)))
         half = [np.zeros((3, 3)), weighted(*entries(first.recording()))]
-        group = next((g for g in GROUPS if name in g), ())
-        others = [half[0], *(whole[n] for n in group if n != name and n in every)]
+        others = [half[0], *(whole[n] for n in others_of(name, every))]
         found[name] = [heading_error_deg(trial, m, 0.5) for m in half]
         found[name] += [heading_error_deg(trial, m) for m in others]
     return found

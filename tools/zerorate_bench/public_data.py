@@ -12,10 +12,12 @@ _MPU = {"sensor": "MPU-6050", "gyro_lsb_per_dps": 131.0, "accel_lsb_per_g": 1638
 _MPU_TEMP = {"temp_lsb_per_degc": 340.0, "temp_offset_degc": 36.53}
 #: The optical attitude of BROAD, in a unit that holds it in 32 bits.
 _QUATERNION_LSB = 2.0**-29
-_ATTITUDE = " ".join(
-    f"opt_q{name}=opt_quat[{i}]:x{1 / _QUATERNION_LSB:.0f}" for i, name in enumerate("wxyz")
-)
+_ATTITUDE = [f"opt_q{n}=opt_quat[{i}]:x{1 / _QUATERNION_LSB:.0f}" for i, n in enumerate("wxyz")]
 _BROAD_RAD_S_PER_LSB = 0.001065297
+_BROAD_MORE = {
+    "source": "BROAD, D. Laidig et al., CC BY 4.0",
+    "channels": {n: {"role": "reference"} for n in (*(f"opt_q{n}" for n in "wxyz"), "moving")},
+}
 
 #: Folder -> units, words as of --map, options.
 _DATA: dict[str, tuple[dict[str, str], str, dict[str, Any]]] = {
@@ -27,16 +29,9 @@ _DATA: dict[str, tuple[dict[str, str], str, dict[str, Any]]] = {
     ),
     "broad": (
         {"gyro": "rad/s", "accel": "m/s2"},
-        f"moving=movement {_ATTITUDE}",
+        " ".join(["moving=movement", *_ATTITUDE]),
         {"sensor": "aktos-t", "hz": 2000 / 7, "accel_lsb_per_g": 2048.0}
-        | {"gyro_lsb_per_dps": math.radians(1) / _BROAD_RAD_S_PER_LSB}
-        | {
-            "more": {
-                "source": "BROAD, D. Laidig et al., CC BY 4.0",
-                "channels": {f"opt_q{n}": {"role": "reference"} for n in "wxyz"}
-                | {"moving": {"role": "reference"}},
-            }
-        },
+        | {"gyro_lsb_per_dps": math.radians(1) / _BROAD_RAD_S_PER_LSB, "more": _BROAD_MORE},
     ),
     "chamber-loop": ({"gyro": "rad/s"}, "", {"hz": 1.0}),
     "gy521-cooldown": (
@@ -105,8 +100,5 @@ def told_of(path: Path) -> dict[str, Any]:
     """What to say to `read_foreign` or `import_recording` of a file of the data folder."""
     units, words, options = _DATA.get(path.parent.name, ({}, "", {}))
     words = f"{words} {_OF_ONE_FILE.get(path.name, '')}"
-    return {
-        "options": Options(**options),
-        "units": units,
-        "mapping": [parsed_mapping(word) for word in words.split()],
-    }
+    mapping = [parsed_mapping(word) for word in words.split()]
+    return {"options": Options(**options), "units": units, "mapping": mapping}

@@ -1,11 +1,7 @@
-"""The bias at the end of a real motion beside other filters', from a first rest and cold.
-
-zerorate bench real-motion --data FOLDER [FOLDER ...]
-"""
+"""The bias at the end of a real motion beside other filters', from a first rest and cold."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -17,7 +13,7 @@ from zerorate_tools.model import build_model
 from zerorate_tools.model.model import binding_of
 from zerorate_tools.peers import Peer, fusion, given, vqf_default
 
-from .heading import GROUPS, moving_in
+from .heading import moving_in, others_of
 from .peers import Decision, uncorrected
 from .tables import machine_line, measured, number, table
 
@@ -102,12 +98,9 @@ def _rounded(error_dps: NDArray[np.float64]) -> float:
 
 def matrices_of(every: Mapping[str, Trial]) -> dict[str, RateScale | None]:
     """Trial -> what the other trials of its device show of its matrix; None where they do not."""
-    with TemporaryDirectory() as scratch:
-        moving = {n: moving_in(t, Path(scratch) / f"{n}.parquet") for n, t in every.items()}
-    shown = {}
+    moving, shown = moving_in(every), {}
     for name in every:
-        group = next((g for g in GROUPS if name[:2] in g), ())
-        others = [moving[n] for n in every if n != name and n[:2] in group]
+        others = [moving[n] for n in others_of(name, every)]
         found = by_windows(others, []) if others else None
         shown[name] = found if found is not None and found.found else None
     return shown

@@ -9,9 +9,9 @@ import h5py
 import numpy as np
 from scipy.io import savemat
 
-from .world import Logs, World, plain, table, text, zipped
+from .world import Logs, World, csv, plain, table
 
-log = Logs(__name__, samples=1000)
+log = Logs(samples=1000)
 # fmt: off
 
 
@@ -48,14 +48,13 @@ matlab = log.file("MATLAB, version 5", "in.mat",
     lambda path, w: savemat(path, {**_arrays(w), "seen": np.zeros((12, 2 * len(w.t_s)))}))
 
 
-@log("MATLAB, a folder with a file a sensor")
-def matlab_folder(folder: Path, world: World) -> Path:
-    (folder / "in").mkdir()
+def _matlab_folder(folder: Path, world: World) -> None:
+    folder.mkdir()
     for name, values in (("AngularVelocity", world.rad), ("Acceleration", world.mps2)):
-        savemat(folder / "in" / f"{name}.mat", {"Timestamp": world.t_s, name: values})
-    return folder / "in"
+        savemat(folder / f"{name}.mat", {"Timestamp": world.t_s, name: values})
 
 
+log.file("MATLAB, a folder with a file a sensor", "in", _matlab_folder)
 matlab73 = log.file("MATLAB, version 7.3: an array's axes change places",
     "in.mat", lambda path, w: _hdf5(path,
         {name: np.atleast_2d(values.T) for name, values in _arrays(w).items()},
@@ -74,13 +73,11 @@ feather = log.file("Feather", "in.feather", lambda path, w: plain(w).to_feather(
 parquet = log.file("Parquet of pandas", "in.parquet", lambda path, w: plain(w).to_parquet(path))
 
 
-@log("Parquet that was cut off")
-def parquet_cut(folder: Path, world: World) -> Path:
-    path = parquet(folder, world)
-    path.write_bytes(path.read_bytes()[:-200])
-    return path
+def _cut(path: Path, world: World) -> None:
+    path.write_bytes(parquet(path.parent, world).read_bytes()[:-200])
 
 
+log.file("Parquet that was cut off", "in.parquet", _cut)
 json_columns = log.text("JSON of pandas, a dictionary of columns",
     lambda w: plain(w).to_json(), "in.json")
 json_records = log.text("JSON, a list of records",
@@ -95,9 +92,9 @@ log.file("a zip without a table of rates",
         {"a.png": b"\x89PNG\r\n", "readme.txt": "nothing of rates\n"}))
 
 
-@log("a zip of two runs with the same names of columns")
-def zip_of_runs(folder: Path, world: World) -> Path:
-    half = len(world.t_s) // 2
-    frame = table("t_s,g{xyz}_dps", world.t_s, world.dps)
-    runs = [text(folder / "run1.csv", frame[:half]), text(folder / "run2.csv", frame[half:])]
-    return zipped(folder / "in.zip", runs, folder)
+def _two_runs(world: World) -> dict[str, str]:
+    half, frame = len(world.t_s) // 2, table("t_s,g{xyz}_dps", world.t_s, world.dps)
+    return {"run1.csv": csv(frame[:half]), "run2.csv": csv(frame[half:])}
+
+
+log.files("a zip of two runs with the same names of columns", "in.zip", _two_runs)

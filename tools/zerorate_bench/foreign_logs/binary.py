@@ -2,7 +2,9 @@
 
 import json
 import struct
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
+from functools import reduce
+from operator import xor
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +20,9 @@ from .world import World
 #: {topic: {field: (type, values)}}.
 Topics = dict[str, dict[str, tuple[str, np.ndarray]]]
 Rows = Sequence[tuple[float, ...]]
-_Reading = tuple[int, Sequence[float], Sequence[float], float]
+#: Topic, ns, message.
+_Message = tuple[str, int, Any]
+SHORT = World(600, 200.0)
 
 
 def ulog(path: Path, topics: Topics) -> None:
@@ -42,74 +46,61 @@ def ulog(path: Path, topics: Topics) -> None:
     path.write_bytes(b"".join(out))
 
 
-def dataflash_of_2015(path: Path, messages: Mapping[str, Rows]) -> None:
-    """An ArduPilot log as it was in 2015: {IMU, IMU2, IMU3: rows of TimeMS, gyro, accel, T}."""
-    _dataflash(path, "TimeMS,GyrX,GyrY,GyrZ,AccX,AccY,AccZ,Temp", "Ifffffff", "<I7f", messages)
+def dataflash_of_2015(path: Path, rows: Rows) -> None:
+    """An ArduPilot log as it was in 2015: rows of TimeMS, gyro, accel, T."""
+    _dataflash(path, "TimeMS,GyrX,GyrY,GyrZ,AccX,AccY,AccZ,Temp", "Ifffffff", "<I7f", rows)
 
 
 def dataflash(path: Path, rows: Rows) -> None:
     """An ArduPilot DataFlash log: FMT messages, then IMU rows (TimeUS, I, gyro, accel, T)."""
-    labels = "TimeUS,I,GyrX,GyrY,GyrZ,AccX,AccY,AccZ,T"
-    _dataflash(path, labels, "QBfffffff", "<QB7f", {"IMU": rows})
+    _dataflash(path, "TimeUS,I,GyrX,GyrY,GyrZ,AccX,AccY,AccZ,T", "QBfffffff", "<QB7f", rows)
 
 
-def _dataflash(
-    path: Path, labels: str, letters: str, body: str, messages: Mapping[str, Rows]
-) -> None:
-    head = b"\xa3\x95"
-
-    def described(kind: int, length: int, name: str, letters: str, labels: str) -> bytes:
-        return head + struct.pack(
-            "<BBB4s16s64s", 128, kind, length, name.encode(), letters.encode(), labels.encode()
-        )
-
-    out = [described(128, 89, "FMT", "BBnNZ", "Type,Length,Name,Format,Columns")]
-    for number, (name, rows) in enumerate(messages.items(), start=131):
-        out.append(described(number, 3 + struct.calcsize(body), name, letters, labels))
-        out += [head + bytes([number]) + struct.pack(body, *row) for row in rows]
+def _dataflash(path: Path, labels: str, letters: str, body: str, rows: Rows) -> None:
+    head, out = b"\xa3\x95", []
+    for kind, length, *words in (
+        (128, 89, "FMT", "BBnNZ", "Type,Length,Name,Format,Columns"),
+        (131, 3 + struct.calcsize(body), "IMU", letters, labels),
+    ):
+        texts = (str(word).encode() for word in words)
+        out.append(head + struct.pack("<BBB4s16s64s", 128, kind, length, *texts))
+    out += [head + bytes([131]) + struct.pack(body, *row) for row in rows]
     path.write_bytes(b"".join(out))
 
 
-def vectornav_line(
-    rates: Sequence[float], accel: Sequence[float] = (0.0, 0.0, -9.8), temp: float = 26.8
-) -> str:
+def vectornav_line(rates: Sequence[float], accel: Sequence[float], temp: float) -> str:
     """One $VNIMU line with its checksum."""
     mag = "-00.2382,+00.7281,+00.2867"
     acc = ",".join(f"{v:+07.3f}" for v in accel)
     gyro = ",".join(f"{v:+010.6f}" for v in rates)
     text = f"VNIMU,{mag},{acc},{gyro},{temp:+05.1f},+096.559"
-    checksum = 0
-    for byte in text.encode():
-        checksum ^= byte
-    return f"${text}*{checksum:02X}"
+    return f"${text}*{reduce(xor, text.encode()):02X}"
 
 
 def bag(
     folder: Path,
     kind: str,
     imu: bool = True,
-    world: World | None = None,
+    world: World = SHORT,
     torn: Collection[int] = (),
 ) -> Path:
-    """Three seconds of sensor_msgs/Imu at 200 Hz, and of Temperature at 1 Hz, or a world; where it
-    is. kind: ros1, ros2 (a folder), db3 (its file alone), mcap, mcap-json. torn: numbers of JSON
+    """A world's sensor_msgs/Imu, and Temperature at every 200th sample; where it is.
+
+    kind: ros1, ros2 (a folder), db3 (its file alone), mcap, mcap-json. torn: numbers of JSON
     messages that are cut off.
     """
-    store = get_typestore(Stores.ROS1_NOETIC if kind == "ros1" else Stores.LATEST)
-    messages = [one for one in _messages(store, world) if imu or one[0] != "/imu/data"]
+    stores = Stores.ROS1_NOETIC if kind == "ros1" else Stores.LATEST
+    messages = [m for m in _messages(get_typestore(stores), world) if imu or m[0] != "/imu/data"]
     folder.mkdir(exist_ok=True)
     if kind == "mcap-json":
         return _mcap_of_json(folder / "run.mcap", messages, torn)
     if kind == "ros1":
-        path = folder / "run.bag"
-        path.unlink(missing_ok=True)
-        with Writer1(path) as writer:
-            _write(writer, messages, Stores.ROS1_NOETIC)
-        return path
+        return _ros1(folder / "run.bag", messages, get_typestore(stores))
     path = folder / kind
     plugin = StoragePlugin.MCAP if kind == "mcap" else StoragePlugin.SQLITE3
     with Writer2(path, version=9, storage_plugin=plugin) as writer:
-        _write(writer, messages, Stores.LATEST)
+        store = get_typestore(stores)
+        _write(writer, messages, store, store.serialize_cdr)
     return path if kind == "ros2" else next(path.glob("*.db3" if kind == "db3" else "*.mcap"))
 
 
@@ -119,23 +110,17 @@ def bag_of_a_driver(path: Path) -> Path:
     store.register(get_types_from_msg("string raw\nsensor_msgs/Imu imu", "driver/msg/Own"))
     own = store.types["driver/msg/Own"]
     messages = [(t, ns, own("$", one)) for t, ns, one in _messages(store) if t == "/imu/data"]
+    return _ros1(path, messages, store)
+
+
+def _ros1(path: Path, messages: list[_Message], store: Any) -> Path:
+    path.unlink(missing_ok=True)
     with Writer1(path) as writer:
-        _write(writer, messages, Stores.ROS1_NOETIC, store)
+        _write(writer, messages, store, store.serialize_ros1)
     return path
 
 
-def _readings(world: World | None) -> list[_Reading]:
-    """(ns, rates, force, degC) of each sample."""
-    if world is None:
-        return [
-            (i * 5_000_000, (0.01 + 1e-5 * i, 0.0, 0.0), (0.0, 0.0, 9.80665), 25.0 + i / 200)
-            for i in range(600)
-        ]
-    at_ns = np.rint(world.t_s * 1e9).astype(int).tolist()
-    return list(zip(at_ns, world.rad.tolist(), world.mps2.tolist(), world.degc.tolist()))
-
-
-def _messages(store: Any, world: World | None = None) -> list[tuple[str, int, Any]]:
+def _messages(store: Any, world: World = SHORT) -> list[_Message]:
     types = store.types
 
     def header(ns: int) -> Any:
@@ -146,8 +131,9 @@ def _messages(store: Any, world: World | None = None) -> list[tuple[str, int, An
 
     vector = types["geometry_msgs/msg/Vector3"]
     nothing = np.zeros(9)
+    readings = zip(*(of.tolist() for of in (world.whole(1e9), world.rad, world.mps2, world.degc)))
     out = []
-    for i, (ns, rate, force, degc) in enumerate(_readings(world)):
+    for i, (ns, rate, force, degc) in enumerate(readings):
         if i % 200 == 0:
             warm = types["sensor_msgs/msg/Temperature"]
             out.append(("/imu/temperature", ns, warm(header(ns), degc, 0.0)))
@@ -164,21 +150,15 @@ def _messages(store: Any, world: World | None = None) -> list[tuple[str, int, An
     return out
 
 
-def _write(
-    writer: Writer1 | Writer2,
-    messages: list[tuple[str, int, Any]],
-    stores: Stores,
-    store: Any = None,
-) -> None:
-    store, connections = store or get_typestore(stores), {}
-    encode = store.serialize_ros1 if stores is Stores.ROS1_NOETIC else store.serialize_cdr
+def _write(writer: Any, messages: list[_Message], store: Any, encode: Callable[..., Any]) -> None:
+    connections: dict[str, Any] = {}
     for topic, ns, message in messages:
         if topic not in connections:
             connections[topic] = writer.add_connection(topic, message.__msgtype__, typestore=store)
         writer.write(connections[topic], ns, encode(message, message.__msgtype__))
 
 
-def _mcap_of_json(path: Path, messages: list[tuple[str, int, Any]], torn: Collection[int]) -> Path:
+def _mcap_of_json(path: Path, messages: list[_Message], torn: Collection[int]) -> Path:
     with open(path, "wb") as file:
         writer = Writer(file, chunk_size=1 << 16)
         writer.start()
@@ -202,15 +182,14 @@ def blackbox(path: Path, rows: Iterable[tuple[int, ...]]) -> None:
     """A Betaflight log of intra frames: time, three gyro counts of 1 dps, three of 1/2048 g."""
     names = ["loopIteration", "time", *(f"gyroADC[{i}]" for i in range(3))]
     names += [f"accSmooth[{i}]" for i in range(3)]
-    fields: dict[str, list[str] | list[int]] = {
-        "name": list(names),
-        "signed": [0, 0, *[1] * 6],
-        "predictor": [0] * 8,
-        "encoding": [1, 1, *[0] * 6],
+    fields = {
+        "name": ",".join(names),
+        **{"signed": "0,0,1,1,1,1,1,1", "predictor": "0,0,0,0,0,0,0,0"},
+        "encoding": "1,1,0,0,0,0,0,0",
     }
     lines = ["Product:Blackbox flight data recorder by Nicholas Sherlock", "Data version:2"]
     lines += ["I interval:1", "P interval:1/1", "Firmware revision:Betaflight 4.3.0"]
-    lines += [f"Field I {key}:{','.join(map(str, row))}" for key, row in fields.items()]
+    lines += [f"Field I {key}:{row}" for key, row in fields.items()]
     lines += ["gyro_scale:0x3f800000", "acc_1G:2048", "minthrottle:1070", "vbatref:160"]
     out = [f"H {line}\n".encode() for line in lines]
     for number, (at_us, *counts) in enumerate(rows):

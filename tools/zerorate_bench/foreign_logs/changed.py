@@ -8,7 +8,7 @@ import pandas as pd
 from .clocks import NIGHT
 from .world import FORCES, RATES, STANDARD_GRAVITY, Logs, World, csv, emptied, plain, table
 
-log = Logs(__name__)
+log = Logs()
 # fmt: off
 _SIX = [*RATES, *FORCES]
 _SECOND = "%Y-%m-%d %H:%M:%S"

@@ -1,14 +1,13 @@
 """Tables whose times, rows or ends are odd."""
 
 import gzip
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
-from .world import RATES, Logs, World, csv, emptied, plain, table, text, zipped
+from .world import RATES, Logs, World, csv, emptied, plain, table
 
-log = Logs(__name__)
+log = Logs()
 # fmt: off
 NIGHT = "2026-05-01T23:59:50"
 _TURNED = ["t_s", "ax_g", "ay_g", "az_g", "gz_dps", "gy_dps", "gx_dps", "temp_c"]
@@ -57,26 +56,20 @@ def _cut(content: str, more: int = 0) -> str:
     return content[: content.rfind(",") + more]
 
 
-@log("empty cells and words among the numbers", least=0.9)
-def odd_cells(folder: Path, world: World) -> Path:
+def _odd_cells(world: World) -> pd.DataFrame:
     frame = plain(world).astype(object)
     for at, word in zip(range(50, 1000, 50), ["", "nan", "ERR", "inf", "--", "-nan(ind)"] * 9):
         frame.loc[at, "gy_dps"] = word
-    return text(folder / "in.csv", frame)
+    return frame
 
 
+log.csv("empty cells and words among the numbers", _odd_cells, least=0.9)
 log.file("UTF-16, tabs, CRLF",
     "in.txt", lambda path,
     w: path.write_bytes(csv(plain(w), sep="\t", lineterminator="\r\n").encode("utf-16")))
 log.file("packed by gzip",
     "in.csv.gz", lambda path, w: path.write_bytes(gzip.compress(csv(plain(w)).encode())))
-
-
-@log("one table in a zip")
-def one_in_a_zip(folder: Path, world: World) -> Path:
-    return zipped(folder / "in.zip", [text(folder / "log.csv", plain(world))], folder)
-
-
+log.files("one table in a zip", "in.zip", lambda w: {"log.csv": csv(plain(w))})
 log.csv("decimal commas and semicolons, as Excel writes them", plain, sep=";", decimal=",")
 log.csv("sorted by the clock of another sensor: rates in every tenth row",
     lambda w: emptied(plain(w), w.count % 10 != 0, RATES), least=0.09)

@@ -6,7 +6,7 @@ import pandas as pd
 from . import binary
 from .world import Logs, World, table
 
-log = Logs(__name__, samples=1000)
+log = Logs(samples=1000)
 # fmt: off
 _AT_US = 5_000_000
 
@@ -67,7 +67,7 @@ log.csv("PX4, sensor_combined by ulog2csv",
 dataflash = log.file("ArduPilot, DataFlash",
     "in.bin", lambda path, w: binary.dataflash(path, _imu_rows(w)))
 dataflash_of_2015 = log.file("ArduPilot, DataFlash of 2015",
-    "in.bin", lambda path, w: binary.dataflash_of_2015(path, {"IMU": _imu_rows_of_2015(w)}))
+    "in.bin", lambda path, w: binary.dataflash_of_2015(path, _imu_rows_of_2015(w)))
 mavlogdump = log.csv("ArduPilot, mavlogdump --format csv: two sensors take turns in one column I",
     _mavlogdump, float_format="%.8f")
 log.csv("MAVLink telemetry, RAW_IMU by mavlogdump: milli-g and milliradians",

@@ -1,15 +1,14 @@
 """Logs of phones: Sensor Logger, phyphox, SensorLog, Physics Toolbox, AndroSensor and their kin."""
 
 import json
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from .world import BIAS_DPS, EPOCH_NS, STANDARD_GRAVITY, Logs, World, table, text, zipped
+from .world import BIAS_DPS, EPOCH_NS, STANDARD_GRAVITY, Logs, World, csv, table
 
-log = Logs(__name__, samples=1000)
+log = Logs(samples=1000)
 # fmt: off
 _GRAVITY = [0, 0, STANDARD_GRAVITY]
 
@@ -23,7 +22,7 @@ def _ns(world: World) -> np.ndarray:
     return EPOCH_NS + (world.t_s * 1e9).astype(np.int64)
 
 
-def _sensor_logger(folder: Path, world: World) -> list[Path]:
+def _sensor_logger(world: World) -> dict[str, str]:
     """A file a sensor; of the two gyroscopes one is without the bias that the system took away, and
     of the accelerometers one is without gravity."""
     late = world.t_s + 0.003
@@ -35,30 +34,18 @@ def _sensor_logger(folder: Path, world: World) -> list[Path]:
         "GyroscopeUncalibrated": (world.t_s, world.rad),
     }
     head = "time,seconds_elapsed,z,y,x"
-    files = [
-        text(folder / f"{name}.csv", table(head, _ns(world), at, values[:, ::-1]))
-        for name, (at, values) in seen.items()
-    ]
-    return [*files, text(folder / "Metadata.csv", pd.DataFrame({"version": [3], "device": ["A"]}))]
+    files = {f"{name}.csv": csv(table(head, _ns(world), at, values[:, ::-1]))
+        for name, (at, values) in seen.items()}
+    return files | {"Metadata.csv": csv(pd.DataFrame({"version": [3], "device": ["A"]}))}
 
 
-@log("Sensor Logger, the zip of its files")
-def sensor_logger_zip(folder: Path, world: World) -> Path:
-    return zipped(folder / "2026-05-01.zip", _sensor_logger(folder / "in", world), folder / "in")
+log.files("Sensor Logger, the zip of its files", "2026-05-01.zip", _sensor_logger)
+log.files("Sensor Logger, the folder of its files", "in", _sensor_logger)
+log.files("Sensor Logger, one file of one sensor", "GyroscopeUncalibrated.csv", _sensor_logger)
 
 
-@log("Sensor Logger, the folder of its files")
-def sensor_logger_folder(folder: Path, world: World) -> Path:
-    return _sensor_logger(folder / "in", world)[0].parent
-
-
-@log("Sensor Logger, one file of one sensor")
-def sensor_logger_file(folder: Path, world: World) -> Path:
-    return _sensor_logger(folder, world)[4]
-
-
-@log("two chips of one phone: uncalibrated beside calibrated, times in ms by another time's unit")
-def two_chips(folder: Path, world: World) -> Path:
+def _two_chips(world: World) -> dict[str, str]:
+    files = {}
     for number, (chip, late_ms) in enumerate({"": 0, "second_": 4}.items()):
         t_ms = 801_439_402 + np.round(world.t_s * 1e3).astype(np.int64) + late_ms
         times = t_ms, world.each(3), EPOCH_NS + t_ms * 1_000_000
@@ -69,18 +56,22 @@ def two_chips(folder: Path, world: World) -> Path:
             ("gyroscope_uncalibrated", f"ang_vel{more}_uncal_{{xyz}}[rad/s]", world.rad),
         ):
             names = f"imuTimestamp,accuracy(more=better),utcTimestamp(nanos),{column}"
-            lines = table(names, *times, values).to_csv(index=False)
             head = f"{chip}{sensor} Non-wakeup,STMicro,2025-03-06\n"
-            (folder / f"{chip}{sensor}_{number + 1}.csv").write_text(head + lines)
-    return folder
+            lines = table(names, *times, values).to_csv(index=False)
+            files[f"{chip}{sensor}_{number + 1}.csv"] = head + lines
+    return files
+
+
+log.files(
+    "two chips of one phone: uncalibrated beside calibrated, times in ms by another time's unit",
+    "", _two_chips)
 
 
 def _long(world: World, gyro: str, accel: str, names: str = "time,sensor,{xyz}") -> pd.DataFrame:
     """Rows of two sensors in turn, told by their names."""
     rates = table(names, world.t_s, world.each(gyro), world.rad)
     force = table(names, world.t_s, world.each(accel), world.mps2)
-    both = pd.concat([rates, force], keys=[0, 1]).reset_index(names=["of", "row"])
-    return both.sort_values(["row", "of"]).drop(columns=["of", "row"])
+    return pd.concat([rates, force]).sort_values(names.split(",")[0], kind="stable")
 
 
 def _sensor_logger_rows(world: World) -> str:
@@ -96,41 +87,28 @@ log.csv("rows of several sensors without a line of names",
     lambda w: _long(w, "GYRO", "ACC"), header=False)
 
 
-def _phyphox(folder: Path, world: World, **how: Any) -> list[Path]:
+def _phyphox(world: World, **how: Any) -> dict[str, str]:
     rates = table("Time (s),Gyroscope {xyz} (rad/s)", world.t_s, world.rad)
     force = table("Time (s),Acceleration {xyz} (m/s^2)", world.t_s, world.mps2)
     meta = pd.DataFrame({"property": ["version"], "value": ["1.1.16"]})
     times = pd.DataFrame({"event": ["START", "PAUSE"], "experiment time": [0.0, world.t_s[-1]]})
-    return [
-        text(folder / "Accelerometer.csv", force, **how),
-        text(folder / "Gyroscope.csv", rates, **how),
-        text(folder / "meta" / "device.csv", meta),
-        text(folder / "meta" / "time.csv", times),
-    ]
+    of = {"Accelerometer.csv": csv(force, **how), "Gyroscope.csv": csv(rates, **how)}
+    return {**of, "meta/device.csv": csv(meta), "meta/time.csv": csv(times)}
 
 
-@log("phyphox, the zip of its files")
-def phyphox_zip(folder: Path, world: World) -> Path:
-    return zipped(folder / "in.zip", _phyphox(folder / "in", world, quoting=1), folder / "in")
-
-
-@log("phyphox, the zip of rates and acceleration without gravity")
-def phyphox_free(folder: Path, world: World) -> Path:
+def _phyphox_free(world: World) -> dict[str, str]:
     names = "Time (s),Linear Acceleration {xyz} (m/s^2)"
-    gyro = _phyphox(folder / "in", world)[1]
-    free = table(names, world.t_s, world.mps2 - _GRAVITY)
-    files = [text(folder / "in" / "Linear Accelerometer.csv", free), gyro]
-    return zipped(folder / "in.zip", files, folder / "in")
+    free = csv(table(names, world.t_s, world.mps2 - _GRAVITY))
+    return {"Linear Accelerometer.csv": free, "Gyroscope.csv": _phyphox(world)["Gyroscope.csv"]}
 
 
+log.files("phyphox, the zip of its files", "in.zip", lambda w: _phyphox(w, quoting=1))
+log.files("phyphox, the zip of rates and acceleration without gravity", "in.zip", _phyphox_free)
 log.csv("phyphox, one file with an absolute value",
     lambda w: table("Time (s),Gyroscope {xyz} (rad/s),Absolute (rad/s)", w.t_s, w.rad,
         np.linalg.norm(w.rad, axis=1)), name="Raw Data.csv")
-
-
-@log("phyphox, semicolons and decimal commas")
-def phyphox_commas(folder: Path, world: World) -> Path:
-    return _phyphox(folder, world, sep=";", decimal=",", float_format="%.9E")[1]
+log.files("phyphox, semicolons and decimal commas", "Gyroscope.csv",
+    lambda w: _phyphox(w, sep=";", decimal=",", float_format="%.9E"))
 
 
 def _sensor_log(world: World) -> pd.DataFrame:

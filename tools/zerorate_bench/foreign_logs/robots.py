@@ -9,7 +9,7 @@ import numpy as np
 from . import binary
 from .world import BIAS_DPS, EPOCH_NS, Logs, World, Writer, table
 
-log = Logs(__name__, samples=1000)
+log = Logs(samples=1000)
 # fmt: off
 
 
@@ -25,15 +25,15 @@ def _bag(kind: str, share: float = 1.0, **how: Any) -> Writer:
     return write
 
 
-ros1 = log("ROS 1, bag")(_bag("ros1"))
-log("ROS 1, bag that was cut off", least=0.3)(_bag("ros1", 0.7))
-log("ROS 2, folder of a bag")(_bag("ros2"))
-db3 = log("ROS 2, .db3 alone")(_bag("db3"))
-log("ROS 2, .db3 that was cut off", least=0.2)(_bag("db3", 0.7))
-mcap = log("MCAP of ROS 2")(_bag("mcap"))
-log("MCAP that was cut off", least=0.3)(_bag("mcap-json", 0.7))
-mcap_json = log("MCAP of JSON")(_bag("mcap-json"))
-log("MCAP of JSON, one message of which is none", least=0.97)(_bag("mcap-json", torn=(70, 700)))
+ros1 = log.add("ROS 1, bag", _bag("ros1"))
+log.add("ROS 1, bag that was cut off", _bag("ros1", 0.7), least=0.3)
+log.add("ROS 2, folder of a bag", _bag("ros2"))
+db3 = log.add("ROS 2, .db3 alone", _bag("db3"))
+log.add("ROS 2, .db3 that was cut off", _bag("db3", 0.7), least=0.2)
+mcap = log.add("MCAP of ROS 2", _bag("mcap"))
+log.add("MCAP that was cut off", _bag("mcap-json", 0.7), least=0.3)
+mcap_json = log.add("MCAP of JSON", _bag("mcap-json"))
+log.add("MCAP of JSON, one message of which is none", _bag("mcap-json", torn=(70, 700)), least=0.97)
 
 _UPRIGHT, _COVARIANCE = [0.0, 0.0, 0.0, 1.0], [1e-4] * 9
 

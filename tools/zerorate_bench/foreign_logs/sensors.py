@@ -6,7 +6,7 @@ import pandas as pd
 from . import binary
 from .world import Logs, World, spelled, table
 
-log = Logs(__name__, samples=1000)
+log = Logs(samples=1000)
 # fmt: off
 _SCALES = "--gyro-lsb-per-dps 131 --accel-lsb-per-g 16384"
 _RAW = f"--gyro-unit lsb --accel-unit lsb {_SCALES}"

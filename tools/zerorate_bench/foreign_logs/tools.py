@@ -1,14 +1,13 @@
 """Logs of further tools: wearables, terminals, makers' programs, public data sets."""
 
 import json
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
-from .world import AFTERNOON, STANDARD_GRAVITY, Logs, World, csv, plain, table, text, zipped
+from .world import AFTERNOON, STANDARD_GRAVITY, Logs, World, csv, plain, table
 
-log = Logs(__name__, samples=1000)
+log = Logs(samples=1000)
 # fmt: off
 _BOOTED_US = 10**8
 _DATE = "%Y-%m-%d %H:%M:%S.%f"
@@ -20,22 +19,18 @@ log.csv("Physics Toolbox of iOS: dates",
     lambda w: table("time,gF{xyz},w{xyz}", w.dates(_DATE, 4), w.g, w.rad))
 
 
-def _metawear(folder: Path, name: str, unit: str, world: World, values: np.ndarray) -> Path:
-    names = f"epoch (ms),time (-13:00),elapsed (s),{{xyz}}-axis ({unit})"
-    said = world.dates("%Y-%m-%dT%H.%M.%S.%f", 3)
-    frame = table(names, world.ns // 10**6, said, world.t_s, values)
-    return text(folder / f"MetaWear_2026-05-01T14.17.54.120_D1C36F1F_{name}_100.000Hz.csv", frame)
+def _metawear(world: World) -> dict[str, str]:
+    stamps = world.ns // 10**6, world.dates("%Y-%m-%dT%H.%M.%S.%f", 3), world.t_s
+    names = "epoch (ms),time (-13:00),elapsed (s),{{xyz}}-axis ({})"
+    of = ("Accelerometer", "g", world.g), ("Gyroscope", "deg/s", world.dps)
+    return {_METAWEAR.format(sensor): csv(table(names.format(unit), *stamps, values))
+        for sensor, unit, values in of}
 
 
-@log("MbientLab's MetaWear, its file of rates")
-def metawear(folder: Path, world: World) -> Path:
-    return _metawear(folder, "Gyroscope", "deg/s", world, world.dps)
-
-
-@log("MbientLab's MetaWear, the folder of its files")
-def metawear_folder(folder: Path, world: World) -> Path:
-    _metawear(folder / "in", "Accelerometer", "g", world, world.g)
-    return _metawear(folder / "in", "Gyroscope", "deg/s", world, world.dps).parent
+_METAWEAR = "MetaWear_2026-05-01T14.17.54.120_D1C36F1F_{}_100.000Hz.csv"
+log.files("MbientLab's MetaWear, its file of rates", _METAWEAR.format("Gyroscope"),
+    lambda w: dict([_metawear(w).popitem()]))
+log.files("MbientLab's MetaWear, the folder of its files", "in", _metawear)
 
 
 def _sensor_server(world: World, typed: bool) -> str:
@@ -102,35 +97,29 @@ log.csv("Movella DOT: a sign of copyright above its table",
     words="--gyro-unit dps --time-unit us")
 
 
-@log("EuRoC, the folder mav0")
-def euroc_folder(folder: Path, world: World) -> Path:
+def _euroc(world: World) -> dict[str, str]:
     names = "#timestamp [ns],w_RS_S_{xyz} [rad s^-1],a_RS_S_{xyz} [m s^-2]"
-    tables = {
-        "imu0": table(names, world.ns, world.rad, world.mps2),
-        "cam0": table("#timestamp [ns],filename", at := world.ns[::5], [f"{t}.png" for t in at]),
-    }
-    for sensor, frame in tables.items():
-        text(folder / "mav0" / sensor / "data.csv", frame)
-    return folder / "mav0"
+    cam = table("#timestamp [ns],filename", at := world.ns[::5], [f"{t}.png" for t in at])
+    imu = table(names, world.ns, world.rad, world.mps2)
+    return {"imu0/data.csv": csv(imu), "cam0/data.csv": csv(cam)}
 
 
+log.files("EuRoC, the folder mav0", "mav0", _euroc)
 log.csv("TUM VI, its text for DSO: names with dots and a unit of the time alone",
     lambda w: table("t,{abcdef}", w.ns, w.rad, w.mps2), "# timestamp[ns] w.x w.y w.z a.x a.y a.z\n",
     name="imu.txt", words="--gyro-unit rad/s", sep=" ", header=False)
 
 
-@log("KITTI's oxts: a file of thirty numbers for each sample")
-def kitti(folder: Path, world: World) -> Path:
-    data = folder / "oxts" / "data"
-    data.mkdir(parents=True)
+def _kitti(world: World) -> dict[str, str]:
+    files = {"timestamps.txt": "\n".join(world.dates(f"{_DATE}000", 9)[:300]) + "\n"}
     for at in range(0, 300):
         row = [49.0, 8.4, 112.8, *world.mps2[at], *world.mps2[at], *world.rad[at], *world.rad[at]]
-        (data / f"{at:010d}.txt").write_text(" ".join(f"{value:.12g}" for value in row) + " 4 11\n")
-    said = world.dates(f"{_DATE}000", 9)[:300]
-    (folder / "oxts" / "timestamps.txt").write_text("\n".join(said) + "\n")
-    return folder / "oxts"
+        said = " ".join(f"{value:.12g}" for value in row)
+        files[f"data/{at:010d}.txt"] = f"{said} 4 11\n"
+    return files
 
 
+log.files("KITTI's oxts: a file of thirty numbers for each sample", "oxts", _kitti)
 _OPENSENSE = "DataRate=100.000000\nDataType={}\nversion=3\nOpenSimVersion=4.1\nendheader\n"
 
 
@@ -234,16 +223,14 @@ log.csv("x-io's x-IMU3",
         w.whole(1e6, 8 * 10**6), w.dps, w.g), name="Inertial.csv")
 
 
-@log("phyphox: rates and acceleration in one zip, of which one table ends sooner", least=0.7,
-    samples=3000)
-def phyphox_shorter(folder: Path, world: World) -> Path:
+def _shorter(world: World) -> dict[str, str]:
     rates = table("Time (s),Gyroscope {xyz} (rad/s)", world.t_s, world.rad)
     force = table("Time (s),Acceleration {xyz} (m/s^2)", world.t_s, world.mps2)
-    files = [
-        text(folder / "in" / "Gyroscope.csv", rates),
-        text(folder / "in" / "Accelerometer.csv", force[:2400]),
-    ]
-    return zipped(folder / "in.zip", files, folder / "in")
+    return {"Gyroscope.csv": csv(rates), "Accelerometer.csv": csv(force[:2400])}
+
+
+log.files("phyphox: rates and acceleration in one zip, of which one table ends sooner", "in.zip",
+    _shorter, least=0.7, samples=3000)
 
 
 def _lists_of_two(world: World) -> str:

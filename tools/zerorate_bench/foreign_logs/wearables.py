@@ -1,14 +1,13 @@
 """Logs of watches, straps and cameras, and a board's files in a zip."""
 
 import json
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
-from .world import Logs, World, table, text, zipped
+from .world import Logs, World, csv, table
 
-log = Logs(__name__, samples=1000)
+log = Logs(samples=1000)
 # fmt: off
 _GYROFLOW = """\
 GYROFLOW IMU LOG
@@ -52,16 +51,13 @@ log.csv("Axivity AX6, with names and a temperature",
         w.dates("%Y-%m-%d %H:%M:%S.%f", 3), w.g, w.dps, w.degc))
 
 
-@log("text without names in a zip: numbers of a board's files")
-def numbers_in_zip(folder: Path, world: World) -> Path:
-    at = world.whole(1e6)
-    tables = {
-        "IMU.txt": table("t,{abcdefg}", at, world.rad, world.mps2, world.degc),
-        "ATT.txt": table("t,{abc}", at, world.g),
-    }
-    root = folder / "in"
-    files = [text(root / name, of, sep=" ", header=False) for name, of in tables.items()]
-    return zipped(folder / "in.zip", files, root)
+def _numbers(world: World) -> dict[str, str]:
+    imu = table("t,{abcdefg}", at := world.whole(1e6), world.rad, world.mps2, world.degc)
+    tables = {"IMU.txt": imu, "ATT.txt": table("t,{abc}", at, world.g)}
+    return {name: csv(of, sep=" ", header=False) for name, of in tables.items()}
+
+
+log.files("text without names in a zip: numbers of a board's files", "in.zip", _numbers)
 
 
 def _of_25_samples(world: World) -> str:

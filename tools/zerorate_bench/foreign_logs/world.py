@@ -121,17 +121,13 @@ CORPUS: list[Log] = []
 class Logs:
     """Registers the logs of a module; `known`: fields of Log, each method returns the writer."""
 
-    def __init__(self, module: str, **known: Any) -> None:
-        self._module, self._known = module, known
+    def __init__(self, **known: Any) -> None:
+        self._known = known
 
-    def __call__(self, what: str, **known: Any) -> Callable[[Writer], Writer]:
+    def add(self, what: str, write: Writer, **known: Any) -> Writer:
         """Register a writer."""
-
-        def add(write: Writer) -> Writer:
-            CORPUS.append(Log(what, write, **self._known | known))
-            return write
-
-        return add
+        CORPUS.append(Log(what, write, **self._known | known))
+        return write
 
     def file(
         self, what: str, name: str, fill: Callable[[Path, World], object], **known: Any
@@ -142,14 +138,32 @@ class Logs:
             fill(folder / name, world)
             return folder / name
 
-        write.__module__ = self._module
-        return self(what, **known)(write)
+        return self.add(what, write, **known)
 
     def text(
         self, what: str, content: Callable[[World], str], name: str = "in.txt", **known: Any
     ) -> Writer:
         """Register a log of one file of text."""
         return self.file(what, name, lambda path, w: path.write_text(content(w), "utf-8"), **known)
+
+    def files(
+        self, what: str, name: str, texts: Callable[[World], dict[str, str]], **known: Any
+    ) -> Writer:
+        """Register files of text by their names: in a zip or a folder of a name, or beside the one
+        of them that is given."""
+
+        def fill(path: Path, world: World) -> None:
+            if path.suffix == ".zip":
+                with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+                    for member, content in texts(world).items():
+                        archive.writestr(member, content)
+                return
+            root = path.parent if path.suffix else path
+            for member, content in texts(world).items():
+                (root / member).parent.mkdir(parents=True, exist_ok=True)
+                (root / member).write_text(content, encoding="utf-8")
+
+        return self.file(what, name, fill, **known)
 
     def csv(
         self, what: str, frame: Callable[[World], pd.DataFrame], before: str = "", **more: Any
@@ -195,18 +209,3 @@ def csv(frame: pd.DataFrame, **how: Any) -> str:
     return str(
         frame.to_csv(**{"index": False, "float_format": "%.15g", "lineterminator": "\n", **how})
     )
-
-
-def text(path: Path, frame: pd.DataFrame, before: str = "", **how: Any) -> Path:
-    """Write a frame as a CSV, after lines of other things."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(before + csv(frame, **how), encoding="utf-8")
-    return path
-
-
-def zipped(path: Path, files: list[Path], root: Path) -> Path:
-    """Files as one archive."""
-    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
-        for file in files:
-            archive.write(file, file.relative_to(root))
-    return path

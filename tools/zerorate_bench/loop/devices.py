@@ -54,12 +54,11 @@ _SMALLEST = 2.5
 #: The same for many widths, of which no limit is missed by the luck of a few.
 _OF_MANY = 2
 HIDDEN_FLOORS = 5.0
+#: Nothing was developed on the devices of "start known" and "curve".
 _SEEDS = {"null": 10_000, "effect": 200_000, "hidden": 400_000, "real": 600_000, "pair": 800_000}
-_SEEDS["many widths"] = 300_000
-#: Devices on which nothing was developed.
-_SEEDS["start known"] = 300_070
-#: Devices on which nothing was developed; and by how many power-ons they are told.
-_SEEDS["curve"], _CURVE_POWER_ONS = 900_000, (4, 6)
+_SEEDS |= {"many widths": 300_000, "start known": 300_070, "curve": 900_000}
+#: By how many power-ons a curve is told.
+_CURVE_POWER_ONS = (4, 6)
 #: Devices a curve and a number of power-ons, of those of an effect; their size in floors.
 _OF_A_CURVE, _CURVE_FLOORS = 0.65, 3.0
 CURVE = "3x curve of a channel"
@@ -117,33 +116,31 @@ def devices(nulls: int, seeds: int, real: list[str]) -> list[Device]:
 
     real: names of quiet recordings, none for no row of real noise.
     """
-    plain = [Device(NULL, _SEEDS["null"] + i) for i in range(nulls)]
-    some = [
-        *plain,
-        *_effects(seeds),
-        *_pairs(seeds),
-        *_many_widths(seeds),
-        *_curves(seeds),
-        *(Device(CORNERS, _SEEDS["corners"] + i) for i in range(_CORNERS_A_SEED * seeds)),
-        *_hidden(max(seeds, nulls // 2)),
-    ]
-    for k, kind in enumerate(HOSTILE):
-        first = _SEEDS["null"] + 10_000 * (k + 1)
-        share = range(-(-nulls // 3))
-        some += [Device(f"{NULL}, {kind}", first + i, noise=kind) for i in share]
-    for i in range(-(-nulls // 2) if real else 0):
-        some.append(Device(REAL, _SEEDS["real"] + i, real=real[i % len(real)]))
-    return some
-
-
-def _effects(seeds: int) -> Iterator[Device]:
+    some = [Device(NULL, _SEEDS["null"] + i) for i in range(nulls)]
     for i in range(int(_SMALLEST * seeds)):
         seed = _SEEDS["effect"] + i
         for effect in (*CATALOGUE, KINK, STEP):
             for size in SIZES if i < seeds else SIZES[:1]:
-                yield Device(f"{size:g}x", seed, ((effect, size),))
+                some.append(Device(f"{size:g}x", seed, ((effect, size),)))
         for effect in OUTSIDE if i < seeds else ():
-            yield Device(OUT, seed, ((effect, 2.0),))
+            some.append(Device(OUT, seed, ((effect, 2.0),)))
+    for (k, pair), i in product(enumerate(PAIRS), range(seeds)):
+        effects = tuple((effect, 2.0) for effect in pair)
+        some.append(Device(TWO, _SEEDS["pair"] + 1000 * k + i, effects))
+    some += _many_widths(seeds)
+    for n, curve, i in product(_CURVE_POWER_ONS, CURVES, range(int(_OF_A_CURVE * seeds))):
+        seed = _SEEDS["curve"] + 1000 * n + i
+        some.append(Device(CURVE, seed, ((curve, _CURVE_FLOORS),), sessions=n))
+    some += [Device(CORNERS, _SEEDS["corners"] + i) for i in range(_CORNERS_A_SEED * seeds)]
+    for n, i in product((4, 7), range(max(seeds, nulls // 2))):
+        seed = _SEEDS["hidden"] + 10_000 * n + i
+        some.append(Device(f"{HIDDEN}, {n} sessions", seed, sessions=n, hidden=HIDDEN_FLOORS))
+    for (k, kind), i in product(enumerate(HOSTILE, start=1), range(-(-nulls // 3))):
+        seed = _SEEDS["null"] + 10_000 * k + i
+        some.append(Device(f"{NULL}, {kind}", seed, noise=kind))
+    for i in range(-(-nulls // 2) if real else 0):
+        some.append(Device(REAL, _SEEDS["real"] + i, real=real[i % len(real)]))
+    return some
 
 
 def _many_widths(seeds: int) -> Iterator[Device]:
@@ -155,24 +152,6 @@ def _many_widths(seeds: int) -> Iterator[Device]:
         yield Device(TOLD, seed, loop, sessions=n)
 
 
-def _curves(seeds: int) -> Iterator[Device]:
-    for n, curve, i in product(_CURVE_POWER_ONS, CURVES, range(int(_OF_A_CURVE * seeds))):
-        yield Device(CURVE, _SEEDS["curve"] + 1000 * n + i, ((curve, _CURVE_FLOORS),), sessions=n)
-
-
-def _hidden(number: int) -> Iterator[Device]:
-    for n in (4, 7):
-        for i in range(number):
-            seed = _SEEDS["hidden"] + 10_000 * n + i
-            yield Device(f"{HIDDEN}, {n} sessions", seed, sessions=n, hidden=HIDDEN_FLOORS)
-
-
-def _pairs(seeds: int) -> Iterator[Device]:
-    for k, pair in enumerate(PAIRS):
-        for i in range(seeds):
-            yield Device(TWO, _SEEDS["pair"] + 1000 * k + i, tuple((e, 2.0) for e in pair))
-
-
 def describe(seed: int) -> tuple[dict[str, Any], str, int]:
     """(description, kind, recordings that are closed); one more power-on follows them."""
     rng = np.random.default_rng(7_000_000 + seed)
@@ -182,26 +161,17 @@ def describe(seed: int) -> tuple[dict[str, Any], str, int]:
     if kind == "shock" or (kind in _JUMP_FLOORS and rng.random() < 0.5):
         motion = [{"kind": "rest", "s": [500, 900]}, _SHOCK, *motion]
     size = float(np.exp(rng.uniform(np.log(2.0), np.log(20.0)))) * _FLOOR_DPS
+    step_lsb = float(rng.choice([1.0, 32.0, 170.0]))
+    b0, b1 = list(rng.normal(0, 0.8, 3)), list(rng.normal(0, 0.015, 3))
+    b2 = list(rng.normal(0, 2e-4, 3) * (rng.random() < 0.5))
     described = {
-        "sensor": {
-            "odr_hz": 4.0,
-            "gyro_noise_at_hz": 100.0,
-            "temp_step_lsb": float(rng.choice([1.0, 32.0, 170.0])),
-        },
-        "bias": {
-            "b0": list(rng.normal(0, 0.8, 3)),
-            "b1": list(rng.normal(0, 0.015, 3)),
-            "b2": list(rng.normal(0, 2e-4, 3) * (rng.random() < 0.5)),
-            "turn_on_dps": 0.02,
-        },
+        "sensor": {"odr_hz": 4.0, "gyro_noise_at_hz": 100.0, "temp_step_lsb": step_lsb},
+        "bias": {"b0": b0, "b1": b1, "b2": b2, "turn_on_dps": 0.02},
         "noise": {"bias_instability_dps": _FLOOR_DPS, "random_walk_dps": 5e-5},
         "sessions": recordings + 1,
         "every_session": {
-            "start_degc": 22.0,
-            "vary_degc": 2.0,
-            "vary_time": 0.15,
-            "temperature": path,
-            "motion": motion,
+            **{"start_degc": 22.0, "vary_degc": 2.0, "vary_time": 0.15},
+            **{"temperature": path, "motion": motion},
         },
         "effect": _effects_single_devices(rng, kind, size, recordings),
     }

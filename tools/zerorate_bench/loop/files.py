@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 from zerorate_tools.closing import load
+from zerorate_tools.demo.broad import rms_mdps
 from zerorate_tools.loop.report.report import report
 from zerorate_tools.loop.verify.analysis import Analysis, model_of
 from zerorate_tools.loop.verify.firmware import Firmware
@@ -59,6 +60,11 @@ _OF_ACCELERATION = [[1.0, 0.3, 0.0], [0.0, 1.0, -0.3], [0.3, 0.0, 1.0]]
 _LEARNED_S = 600
 _FLOOR_DPS = 0.002
 _CROSS = [[0.0, 0.01, -0.005], [0.005, 0.0, 0.01], [-0.01, 0.005, 0.0]]
+#: What a line that no block shows is to the tables.
+_INTERFERENCE: dict[str, Any] = {
+    **{"effect": "periodic-interference", "confidence": "tentative"},
+    **{"sources": [], "confounded_with": []},
+}
 HELD_IN_A_HAND = "files, acceleration 80 mdps, a third of it in the hand"
 
 
@@ -142,24 +148,22 @@ def look_at_files(device: Device) -> Outcome:
     """Simulate a device into files, close them, and take the report's word for what was found."""
     with tempfile.TemporaryDirectory() as folder:
         made = list(_written(device, Path(folder)))
-        paths = [path for path, _ in made]
-        analysis = load([*paths])
-        said = report(analysis)
-        in_motion = None
-        if device.row == HELD_IN_A_HAND:
-            in_motion = _in_motion_mdps(analysis, *made[-1])
-    effects, judgement, quick = said["effects"], analysis.judgement, said["interference"]
+        analysis = load([path for path, _ in made])
+        said, held = report(analysis), device.row == HELD_IN_A_HAND
+        in_motion = _in_motion_mdps(analysis, *made[-1]) if held else None
+    judgement = analysis.judgement
+    effects = said["effects"] + [_INTERFERENCE] * len(said["interference"])
     floor = float(np.sqrt(np.mean(analysis.floor_dps**2)))
     return Outcome(
         device,
-        [effect["effect"] for effect in effects] + ["periodic-interference"] * len(quick),
-        [effect["sources"] for effect in effects] + [[]] * len(quick),
-        [effect["confounded_with"] for effect in effects] + [[]] * len(quick),
-        [effect["confidence"] for effect in effects] + ["tentative"] * len(quick),
-        len(said["events"]),
-        bool(judgement.residual_test.left),
-        judgement.before_rms / floor,
-        judgement.after_rms / floor,
+        [effect["effect"] for effect in effects],
+        [effect["sources"] for effect in effects],
+        [effect["confounded_with"] for effect in effects],
+        [effect["confidence"] for effect in effects],
+        events=len(said["events"]),
+        excess=bool(judgement.residual_test.left),
+        before=judgement.before_rms / floor,
+        after=judgement.after_rms / floor,
         in_motion_mdps=in_motion,
     )
 
@@ -173,7 +177,7 @@ def _in_motion_mdps(analysis: Analysis, path: Path, truth: Truth) -> float:
     bias = np.vstack([device.run(frames) for frames in frames_in_batches(recording)]) / 256
     error = (bias - truth.bias_lsb) / scales.gyro_lsb_per_dps
     counts = ~truth.still & (truth.t_us - truth.t_us[0] > 1e6 * _LEARNED_S)
-    return float(1e3 * np.sqrt((error[counts] ** 2).mean()))
+    return rms_mdps(error[counts])
 
 
 def _written(device: Device, folder: Path) -> Iterator[tuple[Path, Truth]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Iterable
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -15,6 +15,7 @@ from zerorate_tools.importers import import_recording
 from zerorate_tools.loop.fit.line import ordinary
 from zerorate_tools.loop.fit.regression import predicted
 from zerorate_tools.loop.fit.single import PiecesByLine, held
+from zerorate_tools.loop.read.sessions import Session
 from zerorate_tools.loop.report.report import report
 from zerorate_tools.loop.search.catalogue import ranges
 from zerorate_tools.loop.verify.analysis import Analysis
@@ -23,7 +24,7 @@ from zerorate_tools.loop.verify.run_kernels import run_and_prune
 from zerorate_tools.model.term import Term
 
 from ..public_data import CLOSED_ALONE, CLOSED_TOGETHER, recordings_folder, told_of
-from ..tables import machine_line, table_of
+from ..tables import machine_line, measured, table_of
 
 #: Of the error before, and of a cubic's, that the error after may be; of a cubic's, the median.
 _MOST_OF_BEFORE, _MOST_OF_CUBIC, _MEDIAN = 1.0, 1.05, 0.7
@@ -43,23 +44,20 @@ def run(data: Path | None) -> dict[str, dict[str, Any]]:
     every = {Path(name).name: [folder / name] for name in CLOSED_ALONE if (folder / name).exists()}
     every |= {name: sorted(folder.glob(pattern)) for name, pattern in CLOSED_TOGETHER.items()}
     with tempfile.TemporaryDirectory() as scratch:
-        for name, paths in every.items():
-            if paths:
-                rows[name] = _closed(paths, Path(scratch))
+        for name, paths in measured(every.items()):
+            stems = (f"{path.parent.name}-{path.name.split('.')[0]}" for path in paths)
+            logs = [Path(scratch, f"{stem}.parquet") for stem in stems]
+            for path, log in zip(paths, logs):
+                import_recording(path, log, **told_of(path))
+            if logs:
+                rows[name] = _row(
+                    run_and_prune(load([*logs]), logs, Path(scratch, "out.parquet"))[0]
+                )
     return rows
 
 
-def _closed(paths: list[Path], scratch: Path) -> dict[str, Any]:
-    logs = [scratch / f"{path.parent.name}-{path.name.split('.')[0]}.parquet" for path in paths]
-    for path, log in zip(paths, logs):
-        import_recording(path, log, **told_of(path))
-    analysis, _ = run_and_prune(load([*logs]), logs, scratch / "corrected.parquet")
-    result = report(analysis)
-    return _row(analysis, result)
-
-
-def _row(analysis: Analysis, result: dict[str, Any]) -> dict[str, Any]:
-    judgement, rival = analysis.judgement, cubic_left(analysis)
+def _row(analysis: Analysis) -> dict[str, Any]:
+    result, judgement, rival = report(analysis), analysis.judgement, cubic_left(analysis)
     best = best_curve_rms_dps(analysis)
     left = rms_mdps(np.vstack(judgement.residual_after))
     cubic = None if rival is None else rms_mdps(np.vstack(rival))
@@ -72,7 +70,7 @@ def _row(analysis: Analysis, result: dict[str, Any]) -> dict[str, Any]:
         "cubic_mdps": "no temperature" if cubic is None else cubic,
         "of_cubic": "" if cubic is None else round(left / cubic, 3),
         "best_curve_of_cubic": "" if not cubic or best is None else round(1e3 * best / cubic, 3),
-        "noise_of_a_block_mdps": _noise(analysis),
+        "noise_of_a_block_mdps": round(1e3 * noise_dps(analysis.holdout), 2),
         "floor_mdps": rms_mdps(analysis.floor_dps),
         "found": ", ".join(effects) or "nothing",
         "confounded_with": "; ".join(b for b in beside if b),
@@ -82,10 +80,10 @@ def _row(analysis: Analysis, result: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-def _noise(analysis: Analysis) -> float:
-    """White noise of a block, mdps, by the rates' differences from one block to the next."""
-    changes = [np.diff(s.rate_dps[s.available], n=2, axis=0) for s in analysis.holdout]
-    return round(float(1e3 * np.sqrt((np.vstack(changes) ** 2).mean() / 6)), 2)
+def noise_dps(sessions: Sequence[Session]) -> float:
+    """White noise of a block, by the rates' differences from one block to the next."""
+    changes = [np.diff(s.rate_dps[s.available], n=2, axis=0) for s in sessions]
+    return float(np.sqrt((np.vstack(changes) ** 2).mean() / 6))
 
 
 def in_markdown(rows: dict[str, dict[str, Any]]) -> str:
@@ -93,10 +91,8 @@ def in_markdown(rows: dict[str, dict[str, Any]]) -> str:
     worse = [n for n, r in rows.items() if r["after_mdps"] > _MOST_OF_BEFORE * r["before_mdps"]]
     ratios = {n: r["of_cubic"] for n, r in rows.items() if r["of_cubic"] != ""}
     beaten = [n for n, ratio in ratios.items() if ratio > _MOST_OF_CUBIC]
-    median = _median(ratios.values())
-    floors = [
-        min(r["of_cubic"], r["best_curve_of_cubic"]) for r in rows.values() if r["of_cubic"] != ""
-    ]
+    floors = [min(ratio, rows[n]["best_curve_of_cubic"]) for n, ratio in ratios.items()]
+    median, floor = (np.median(of) if of else np.nan for of in ([*ratios.values()], floors))
     lines = [
         "# Closing the loop on real recordings",
         "",
@@ -105,20 +101,10 @@ def in_markdown(rows: dict[str, dict[str, Any]]) -> str:
         f"Worse than a cubic by more than 5 %, held out alike: {', '.join(beaten) or 'none'}.",
         f"Error after, over the cubic's: {median:.2f} in the median (asked for: {_MEDIAN}).",
         f"The same of the best of many curves over temperature, where it leaves less, chosen on "
-        f"each axis by what was held out itself: {_median(floors):.2f}.",
+        f"each axis by what was held out itself: {floor:.2f}.",
         "",
     ]
-    return "\n".join([*lines, recordings_table(rows)])
-
-
-def recordings_table(rows: dict[str, dict[str, Any]]) -> str:
-    """A row a recording."""
-    return table_of([{"recording": name, **row} for name, row in rows.items()])
-
-
-def _median(values: Iterable[float]) -> float:
-    every = list(values)
-    return float(np.median(every)) if every else float("nan")
+    return "\n".join([*lines, table_of([{"recording": name, **row} for name, row in rows.items()])])
 
 
 def cubic_left(analysis: Analysis) -> list[NDArray[np.float64]] | None:

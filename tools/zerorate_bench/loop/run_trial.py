@@ -95,17 +95,10 @@ def _told(device: Device) -> Outcome:
     left = simulate(device.seed, [(PRANDTL_ISHLINSKII_TOLD, size)], n)
     before, after = _left_by_line(made.sessions), _left_by_line(left.sessions)
     unit = _noise_rms(made.sessions[-1], made.noise_dps[-1])
-    of_all = [_rms(e) / unit for e in (before, np.minimum(before, after), after)]
-    said = ["thermal-hysteresis"]
-    nearer = bool((after < before).any())
-    return Outcome(
-        device,
-        said if nearer else [],
-        before=of_all[0],
-        after=of_all[1],
-        unpruned=of_all[2],
-        withdrawn=[] if nearer else said,
-    )
+    named = ["thermal-hysteresis"] if (after < before).any() else []
+    straight, least, whole = (_rms(e) / unit for e in (before, np.minimum(before, after), after))
+    taken = [] if named else ["thermal-hysteresis"]
+    return Outcome(device, named, before=straight, after=least, unpruned=whole, withdrawn=taken)
 
 
 def _rms(each: np.ndarray) -> float:

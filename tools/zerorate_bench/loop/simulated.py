@@ -5,7 +5,7 @@ Noise, temperature path and channels are drawn from a seed; `added_effects` adds
 
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -35,7 +35,6 @@ class Device:
     sessions: list[Session]
     noise_dps: list[np.ndarray]
     floor_dps: np.ndarray
-    truth: list[str] = field(default_factory=list)
 
 
 def flicker(rng: np.random.Generator, n: int, sigma: float, exponent: float = 1.0) -> np.ndarray:
@@ -93,8 +92,7 @@ def channels(rng: np.random.Generator, ticks: int, tick_s: float) -> dict[str, n
         "temp": temperature_path(rng, ticks, tick_s),
         **{f"acc_{a}": acc[:, i] for i, a in enumerate("xyz")},
         "vib": 0.01 + _levels(rng, ticks, tick_s, 500.0, 0.0, 0.2) ** 2,
-        "vdd_mv": 3300
-        + 40 * _wander(rng, ticks, tick_s, 900.0)
+        "vdd_mv": (3300 + 40 * _wander(rng, ticks, tick_s, 900.0))
         + _levels(rng, ticks, tick_s, 600.0, -60.0, 60.0),
         "load": _levels(rng, ticks, tick_s, 400.0, 0.0, 1.0),
         "humidity": 45 + 10 * _wander(rng, ticks, tick_s, 1800.0),
@@ -133,9 +131,8 @@ HOSTILE = ("walk4", "steep", "telegraph", "outliers", "unequal")
 
 def _hidden(rng: np.random.Generator, n: int) -> np.ndarray:
     """(n,) a slow cause nobody recorded: a different smooth wander in every session."""
-    return (
-        _wander(rng, n * TICKS, BLOCK_S / TICKS, rng.uniform(400, 1800)).reshape(n, TICKS).mean(1)
-    )
+    slow = _wander(rng, n * TICKS, BLOCK_S / TICKS, rng.uniform(400, 1800))
+    return slow.reshape(n, TICKS).mean(1)
 
 
 def simulate(
@@ -163,9 +160,8 @@ def simulate(
             sources = {"temp": sources["temp"]}
         scale = [1.0, 3.0, 0.5, 2.0][i % 4] if noise_kind == "unequal" else 1.0
         noises.append(noise(rng, n, noise_kind, level * scale))
-        made.append(
-            Session(f"session-{i + 1}", BLOCK_S, TICKS, noises[-1].copy(), np.ones(n), sources)
-        )
+        rate, name = noises[-1].copy(), f"session-{i + 1}"
+        made.append(Session(name, BLOCK_S, TICKS, rate, np.ones(n), sources))
     line = rng.normal(0, 0.02, 3)
     for s in made:
         t = s.block_mean(s.sources["temp"]) - 25.0
@@ -174,7 +170,7 @@ def simulate(
         add_effect(rng, made, name, size * floor)
     if hidden:
         add_parts(rng, made, [_hidden(rng, n) for _ in made], hidden * floor)
-    return Device(made, noises, floor, [name for name, _ in effects])
+    return Device(made, noises, floor)
 
 
 def noise_level(rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
@@ -225,7 +221,6 @@ def cut_into_sessions(name: str, seed: int) -> tuple[list[Session], list[np.ndar
 #: Of recordings whose temperature turns sharply. The part warms later than its thermometer or
 #: earlier, and its board slower than either, which bends it with play. So the bias changes abruptly
 #: at every corner of the temperature. None is a step.
-KINDS = ("charger", "freezer", "door")
 CORNER_TICKS, _BLOCKS = 20, 180
 _TICK_S = BLOCK_S / CORNER_TICKS
 #: Readings of a thermometer, degC: of common parts.
@@ -235,10 +230,7 @@ _READINGS_DEGC = (1 / 326.8, 1 / 16, 1 / 2)
 def simulate_corners(seed: int) -> Device:
     """One recording of a device with a bias that bends over its own temperature and no step."""
     rng = np.random.default_rng(seed)
-    kind = KINDS[seed % len(KINDS)]
-    around = {"charger": _charger, "freezer": _freezer, "door": _door}[kind](
-        rng, _BLOCKS * CORNER_TICKS
-    )
+    around = (_charger, _freezer, _door)[seed % 3](rng, _BLOCKS * CORNER_TICKS)
     shown = first_order_lag(around, _log_uniform(rng, 3.0, 90.0), _TICK_S)
     own = first_order_lag(shown, _log_uniform(rng, 2.0, 120.0), _TICK_S)
     board = first_order_lag(shown, _log_uniform(rng, 150.0, 900.0), _TICK_S)
@@ -260,7 +252,7 @@ def simulate_corners(seed: int) -> Device:
         {"temp": shown},
         temp_step_degc=step,
     )
-    return Device([session], [made], floor, [kind])
+    return Device([session], [made], floor)
 
 
 def _log_uniform(rng: np.random.Generator, low: float, high: float) -> float:

@@ -151,14 +151,10 @@ def _about(
     both: list[np.ndarray], stretch: np.ndarray, rest: np.ndarray, scored: np.ndarray
 ) -> list[NDArray[np.float64]]:
     """Errors before and after, each stretch about its own mean at rest."""
-    out = []
-    for error in both:
-        level = np.zeros_like(error)
-        for s in np.unique(stretch):
-            if (rest & (stretch == s)).any():
-                level[stretch == s] = error[rest & (stretch == s)].mean(axis=0)
-        out.append((error - level)[scored])
-    return out
+    level = np.zeros_like(both)
+    for s in np.unique(stretch[rest]):
+        level[:, stretch == s] = np.mean([e[rest & (stretch == s)] for e in both], 1, keepdims=True)
+    return [*(both - level)[:, scored]]
 
 
 def _further(model: Model, logs: list[Path], further: _Made) -> tuple[float, float]:

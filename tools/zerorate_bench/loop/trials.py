@@ -13,7 +13,7 @@ from zerorate_tools.recordings import Recording, Scales, write_recording
 
 from ..children import close_cost
 from ..public_data import data_folder
-from ..tables import machine, machine_line, outcomes, table
+from ..tables import machine_line, outcomes, table
 from .devices import Device, devices
 from .figures import Figure, figures
 from .files import ROWS, file_devices, look_at_files
@@ -45,8 +45,6 @@ _LONG_S, _TURN_S, _TURN_DPS = 9000.0, (4000.0, 4300.0), 3.0
 #: Around the ends of a turn, seconds: not counted either way.
 _ENDS_S, _LEAST_SHARE = 20.0, 95.0
 _BESIDE_S = 500.0
-#: Devices without an effect that the page names where one was found in them.
-_MOST_EXAMPLES = 20
 
 
 def resting(
@@ -133,15 +131,7 @@ def run(
         ]
     return {
         "devices": len(seen),
-        "machine": machine(),
-        "cpu_s_a_device": sum(o.cpu_s for o in seen) / max(len(seen), 1),
         "figures": [f.to_dict() for f in found],
-        # [row, seed, names, how sure] of devices without an effect in which one was found
-        "false_alarms": [
-            [o.device.row, o.device.seed, o.found, o.confidence]
-            for o in seen
-            if o.found and not o.device.effects
-        ][:_MOST_EXAMPLES],
     }
 
 

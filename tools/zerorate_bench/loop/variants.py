@@ -30,8 +30,8 @@ from zerorate_tools.recordings.recording import ACCEL, GYRO, TEMP, TIME
 from zerorate_tools.replay.samples import frames_in_batches
 
 from ..public_data import CLOSED_ALONE, recordings_folder, told_of
-from ..tables import machine_line, table, table_of
-from .real import rms_mdps
+from ..tables import machine_line, measured, table, table_of
+from .real import noise_dps, rms_mdps
 
 #: A step that is put in: where in the course, and of how many times the noise of a block.
 _STEP_AT, _STEP_NOISES = 0.6, 10.0
@@ -73,19 +73,17 @@ VARIANTS: dict[str, Callable[[Recording], list[Recording]]] = {
 }
 
 
-def run(data: Path | None, advance: Callable[[float], None]) -> list[dict[str, Any]]:
+def run(data: Path | None) -> list[dict[str, Any]]:
     """A row for each recording and variant: before and after in mdps where it was not fitted, what
     was found, steps listed; `refused` says why there is none.
     """
     rows, folder = [], recordings_folder(data)
     with tempfile.TemporaryDirectory() as scratch:
-        for name in CLOSED_ALONE:
-            if (folder / name).exists():
-                recording = _imported(folder / name, Path(scratch))
-                for variant, made in _of(recording, Path(scratch)).items():
-                    row = {"recording": Path(name).name, "variant": variant}
-                    rows.append(row | _looked_at(recording, variant, made, Path(scratch)))
-                    advance(1)
+        for path in measured([folder / n for n in CLOSED_ALONE if (folder / n).exists()]):
+            recording = _imported(path, Path(scratch))
+            for variant, made in _of(recording, Path(scratch)).items():
+                row = {"recording": path.name, "variant": variant}
+                rows.append(row | _looked_at(recording, variant, made, Path(scratch)))
     return rows
 
 
@@ -102,23 +100,14 @@ def _of(recording: Recording, scratch: Path) -> dict[str, list[Recording]]:
     """Those variants that change anything."""
     had = dict(zip(BEREFT, (recording.has_accel, recording.has_temp)))
     made = {name: make(recording) for name, make in VARIANTS.items() if had.get(name, True)}
-    return made | {STEP: [_with_step(recording, _STEP_NOISES * _noise_dps(recording, scratch))]}
-
-
-def _noise_dps(recording: Recording, scratch: Path) -> float:
-    """White noise of a block."""
-    [session] = _sessions([_written(recording, scratch / "whole.parquet")])
-    changes = np.diff(session.rate_dps[session.available], n=2, axis=0)
-    return float(np.sqrt((changes**2).mean() / 6))
+    log = _written(recording, scratch / "whole.parquet")
+    noise = noise_dps(sessions_of([read_ticks(log, tick_seconds(log))])[0])
+    return made | {STEP: [_with_step(recording, _STEP_NOISES * noise)]}
 
 
 def _written(recording: Recording, path: Path) -> Path:
     write_recording(recording, path)
     return path
-
-
-def _sessions(logs: list[Path]) -> list[Session]:
-    return sessions_of([read_ticks(log, max(map(tick_seconds, logs))) for log in logs])[0]
 
 
 def _looked_at(
@@ -198,8 +187,10 @@ def in_markdown(rows: list[dict[str, Any]]) -> str:
         "",
     ]
     header = ("variant", "closed", "refused", "deployed", "worse", "after over before, median")
-    cells = [_counted(variant, own) for variant, own in _by_variant(rows).items()]
-    lines.append(table(header, cells))
+    variants = dict.fromkeys(row["variant"] for row in rows)
+    lines.append(
+        table(header, [_counted(v, [r for r in rows if r["variant"] == v]) for v in variants])
+    )
     for half, other in ((FIRST, "second"), (SECOND, "first")):
         own = [r for r in rows if r["variant"] == half and "other_after_mdps" in r]
         worse = [r for r in own if r["other_after_mdps"] > _WORSE * r["other_before_mdps"]]
@@ -213,16 +204,9 @@ def in_markdown(rows: list[dict[str, Any]]) -> str:
     return "\n".join([*lines, table_of(shown)])
 
 
-def _by_variant(rows: list[dict[str, Any]]) -> dict[str, list[dict[str, Any]]]:
-    names = dict.fromkeys(row["variant"] for row in rows)
-    return {name: [r for r in rows if r["variant"] == name] for name in names}
-
-
-def _counted(
-    variant: str, rows: list[dict[str, Any]]
-) -> tuple[str, int, int, int, int, float | str]:
+def _counted(variant: str, rows: list[dict[str, Any]]) -> list[Any]:
     closed = [r for r in rows if "after_mdps" in r]
     ratios = [r["after_mdps"] / r["before_mdps"] for r in closed]
     median = round(float(np.median(ratios)), 2) if ratios else ""
     deployed, worse = sum(bool(r["found"]) for r in closed), sum(r > _WORSE for r in ratios)
-    return variant, len(closed), len(rows) - len(closed), deployed, worse, median
+    return [variant, len(closed), len(rows) - len(closed), deployed, worse, median]

@@ -21,21 +21,17 @@ from zerorate_tools.kernels.reading import Kernels
 from zerorate_bench.native.parts import PARTS
 
 _COMMON = (
-    *("-ffreestanding", "-fno-jump-tables", "-fwrapv", "-fno-sanitize=undefined", "-fno-builtin"),
-    *("-ffunction-sections", "-nostdlib", "-Wl,--gc-sections"),
+    "-ffreestanding -fno-jump-tables -fwrapv -fno-sanitize=undefined -fno-builtin "
+    "-ffunction-sections -nostdlib -Wl,--gc-sections "
     # a loop that subtracts stays one, for there is no division to make of it
-    *("-mllvm", "-replexitval=never"),
-)
+    "-mllvm -replexitval=never"
+).split()
 # Small, and as fast as may be: what branches share is made once, before or behind them; a select is
 # a branch on this processor, so that none is made of one; a load is not made twice to save one.
-_SMALL = tuple(
-    word
-    for option in (
-        *("inline-threshold=15", "sink-common-insts=1", "enable-gvn-hoist", "enable-pre=0"),
-        "two-entry-phi-node-folding-threshold=0",
-    )
-    for word in ("-mllvm", f"-{option}")
-)
+_SMALL = (
+    "-mllvm -inline-threshold=15 -mllvm -sink-common-insts=1 -mllvm -enable-gvn-hoist "
+    "-mllvm -enable-pre=0 -mllvm -two-entry-phi-node-folding-threshold=0"
+).split()
 # What every sample runs through: where instructions are saved for the fewest bytes.
 _ALWAYS = "static inline __attribute__((always_inline))"
 _WHOLE = '_Pragma("clang loop unroll(full)")'

@@ -55,16 +55,15 @@ class Emulated:
 
             self._cpu = u.Uc(u.UC_ARCH_ARM, u.UC_MODE_THUMB | u.UC_MODE_MCLASS)
             self._cpu.ctl_set_cpu_model(r.UC_CPU_ARM_CORTEX_M0)
-            self._arguments = [r.UC_ARM_REG_R0 + i for i in range(4)]
-            self._back, self._stack = r.UC_ARM_REG_LR, r.UC_ARM_REG_SP
-            self._counter = r.UC_ARM_REG_PC
+            first, *others = r.UC_ARM_REG_R0, r.UC_ARM_REG_LR, r.UC_ARM_REG_SP, r.UC_ARM_REG_PC
         else:
             from unicorn import riscv_const as v
 
             self._cpu = u.Uc(u.UC_ARCH_RISCV, u.UC_MODE_RISCV32)
-            self._arguments = [v.UC_RISCV_REG_A0 + i for i in range(4)]
-            self._back, self._stack = v.UC_RISCV_REG_RA, v.UC_RISCV_REG_SP
-            self._counter = v.UC_RISCV_REG_PC
+            first, *others = (
+                *(v.UC_RISCV_REG_A0, v.UC_RISCV_REG_RA, v.UC_RISCV_REG_SP, v.UC_RISCV_REG_PC),
+            )
+        self._arguments, (self._back, self._stack, self._counter) = range(first, first + 4), others
         for start, size in ((_CODE, 0x20000), (_END, 0x1000), (_STACK - _SIZE, _SIZE)):
             self._cpu.mem_map(start, size)
         self._cpu.mem_map(_DATA, 16 * _SIZE)

@@ -139,7 +139,7 @@ PARTS = {
 
 def known(part: str) -> tuple[Any, ...]:
     """The part's KNOWN (see trying.answer)."""
-    rounds, what, new, bits, *arrays = _KNOWN[part]()
+    rounds, what, new, bits, *arrays = _refine() if part == "refine" else _known(part)
     return (rounds, what, new, bits, *(_sparse(words) for words in arrays))
 
 
@@ -157,20 +157,18 @@ def _sparse(words: Sequence[int]) -> tuple[int, bytes, bytes]:
     return len(words), short, whole
 
 
-def _rest() -> tuple[Any, ...]:
-    limits = {"window_s": 0.08, "segment_s": 0.16, "promote_s": 0.1, "fit_s": 0.04, **_SHAKY}
-    corrector = Corrector(Sensor(), bins=4, short=1, long=2, **limits)
-    return 2, BURST + 10, 8 * 10, 5, corrector.state, corrector.settings, [0] * (8 * 10)
-
-
-def _motion() -> tuple[Any, ...]:
-    settings = motion_settings(node_s=0.02, longest_stage=4, least_dps=0.001, least_up_g=0.0)
-    return 60, 10000, 7, 10, motion_state(settings), settings, _FRAME
-
-
-def _gravity() -> tuple[Any, ...]:
-    settings = gravity_settings(sub_unit_s=0.04, units=4, threshold=1)
-    return 30, 10000, 7, 12, gravity_state(settings), settings, _FRAME
+def _known(part: str) -> tuple[Any, ...]:
+    if part == "rest":
+        limits = {"window_s": 0.08, "segment_s": 0.16, "promote_s": 0.1, "fit_s": 0.04, **_SHAKY}
+        made = Corrector(Sensor(), bins=4, short=1, long=2, **limits)
+        return 2, BURST + 10, 8 * 10, 5, made.state, made.settings, [0] * (8 * 10)
+    if part == "motion":
+        motion = motion_settings(node_s=0.02, longest_stage=4, least_dps=0.001, least_up_g=0.0)
+        return 60, 10000, 7, 10, motion_state(motion), motion, _FRAME
+    if part == "gravity":
+        gravity = gravity_settings(sub_unit_s=0.04, units=4, threshold=1)
+        return 30, 10000, 7, 12, gravity_state(gravity), gravity, _FRAME
+    return 20, 250000, 7, 12, [0] * 100, known_model().e, _FRAME  # effects
 
 
 def known_model() -> EffectModel:
@@ -190,10 +188,6 @@ def known_model() -> EffectModel:
     return model
 
 
-def _effects() -> tuple[Any, ...]:
-    return 20, 250000, 7, 12, [0] * 100, known_model().e, _FRAME
-
-
 def _refine() -> tuple[Any, ...]:
     model = known_model()
     model.refine()
@@ -202,12 +196,3 @@ def _refine() -> tuple[Any, ...]:
     state[STATE.STILLNESS], state[STATE.TEMP] = STILLNESS.STILL, 900
     settings[SETTINGS.WINDOW_SHIFT], settings[SETTINGS.SEGMENT] = 6, 1
     return 20, 0, 0, 0, state, settings, model.e
-
-
-_KNOWN: dict[str, Callable[[], tuple[Any, ...]]] = {
-    "rest": _rest,
-    "motion": _motion,
-    "gravity": _gravity,
-    "effects": _effects,
-    "refine": _refine,
-}
