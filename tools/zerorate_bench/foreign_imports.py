@@ -77,7 +77,9 @@ def _outcome(log: Log, source: Path, out: Path) -> tuple[str, str]:
     if "; " not in said:
         return NO_CURE, said
     if cut := _CUT.search(said):
-        parts = _parts(cut[0].replace("FOLDER", str(out.parent / "parts")))
+        words = shlex.split(cut[0].replace("FOLDER", str(out.parent / "parts")))[1:]
+        code, lines = _said(words)
+        parts = [] if code else [Path(word) for line in lines for word in line.split()]
         shares = [_outcome(replace(log, least=0.4), part, out)[0] for part in parts]
         good = len(parts) > 1 and all(share in (RIGHT, BY_ITS_WORDS) for share in shares)
         return (BY_ITS_WORDS if good else MISLED), said
@@ -85,11 +87,15 @@ def _outcome(log: Log, source: Path, out: Path) -> tuple[str, str]:
     return (BY_ITS_WORDS if RIGHT in ends else MISLED if WRONG in ends else REFUSED), said
 
 
-def _parts(command: str) -> list[Path]:
-    """The files that a command to cut one makes."""
-    with contextlib.redirect_stdout(io.StringIO()) as made:
-        code = main(shlex.split(command)[1:])
-    return [Path(line) for line in made.getvalue().split()] if code == 0 else []
+def _said(words: list[str]) -> tuple[int, list[str]]:
+    """(exit code, lines of what was said) of a command."""
+    stdout, stderr = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(stdout), contextlib.redirect_stderr(stderr):
+        try:
+            code = main(words)
+        except SystemExit as refused:  # words that are no words of the command line
+            code = int(refused.code or 0)
+    return code, (stderr if code else stdout).getvalue().splitlines()
 
 
 def _followed(log: Log, source: Path, out: Path, typed: list[str], said: str) -> set[str]:
@@ -108,13 +114,7 @@ def _followed(log: Log, source: Path, out: Path, typed: list[str], said: str) ->
 
 def _imported(source: Path, out: Path, words: list[str]) -> tuple[int, str]:
     """(exit code, what was said) of the command."""
-    stdout, stderr = io.StringIO(), io.StringIO()
-    with contextlib.redirect_stdout(stdout), contextlib.redirect_stderr(stderr):
-        try:
-            code = main(["import", str(source), "--out", str(out), *words])
-        except SystemExit as refused:  # words that are no words of the command line
-            code = int(refused.code or 0)
-    lines = (stderr if code else stdout).getvalue().splitlines()
+    code, lines = _said(["import", str(source), "--out", str(out), *words])
     return code, " / ".join(line.strip() for line in (lines if code else lines[1:]))
 
 

@@ -9,6 +9,8 @@ from .world import Logs, World, table
 log = Logs(samples=1000)
 # fmt: off
 _AT_US = 5_000_000
+#: Counts a deg/s and a g.
+_BETAFLIGHT = 1, 2048
 
 
 def _us(world: World) -> np.ndarray:
@@ -26,12 +28,9 @@ def _topics(world: World) -> binary.Topics:
 
 def _imu_rows(world: World) -> list[tuple[float, ...]]:
     """Two instances that take turns, the second with another bias."""
-    columns = (_us(world), world.rad, world.mps2, world.degc)
-    return [
-        row
-        for at, rate, force, warm in zip(*columns)
-        for row in ((int(at), 0, *rate, *force, warm), (int(at), 1, *(rate + 0.05), *force, warm))
-    ]
+    columns = (_us(world).tolist(), world.rad, world.mps2, world.degc)
+    return [(at, n, *(rate + n * 0.05), *force, warm)
+        for at, rate, force, warm in zip(*columns) for n in (0, 1)]
 
 
 def _imu_rows_of_2015(world: World) -> list[tuple[float, ...]]:
@@ -45,14 +44,9 @@ def _mavlogdump(world: World) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=names.split(","))
 
 
-def _counts(world: World) -> tuple[np.ndarray, np.ndarray]:
-    """As Betaflight counts, of 1 deg/s and of 1/2048 g."""
-    return world.counts(1, 2048)
-
-
 def _blackbox_rows(world: World) -> list[tuple[int, ...]]:
-    counts, force = _counts(world)
-    return [(t, *c, *f) for t, c, f in zip(*(of.tolist() for of in (_us(world), counts, force)))]
+    columns = _us(world), *world.counts(*_BETAFLIGHT)
+    return [(t, *c, *f) for t, c, f in zip(*(of.tolist() for of in columns))]
 
 
 ulog = log.file("PX4, ULog", "in.ulg", lambda path, w: binary.ulog(path, _topics(w)))
@@ -78,9 +72,10 @@ blackbox = log.file("Betaflight, blackbox",
     "in.bbl", lambda path, w: binary.blackbox(path, _blackbox_rows(w)))
 log.csv("Betaflight, blackbox_decode",
     lambda w: table("loopIteration, time (us), gyroADC[{012}], accSmooth[{012}]", w.count, _us(w),
-        *_counts(w)))
+        *w.counts(*_BETAFLIGHT)))
 blackbox_explorer = log.csv("Blackbox Explorer, settings above the table",
-    lambda w: table("loopIteration,time,gyroADC[{012}]", w.count, _us(w), _counts(w)[0]),
+    lambda w: table("loopIteration,time,gyroADC[{012}]", w.count, _us(w),
+        w.counts(*_BETAFLIGHT)[0]),
     '"Product","Blackbox"\n"gyro_scale","0x3f800000"\n' + '"d_min","30"\n' * 150)
 log.csv("Crazyflie, gyro.x in deg/s and acc.x in g",
     lambda w: table("timestamp,gyro.{xyz},acc.{xyz}", w.whole(1e3), w.dps, w.g),

@@ -21,13 +21,9 @@ log.csv("WitMotion, its table",
 
 
 def _two_wit_motions(world: World) -> pd.DataFrame:
-    both = [
-        table(
-            "Time(s),DeviceName,Acc{XYZ}(g),As{XYZ}(°/s)",
-            *(world.t_s, world.each(name), world.g, world.dps + more),
-        )
-        for name, more in (("left", 0.0), ("right", 3.0))
-    ]
+    names = "Time(s),DeviceName,Acc{XYZ}(g),As{XYZ}(°/s)"
+    both = [table(names, world.t_s, world.each(name), world.g, world.dps + more)
+        for name, more in (("left", 0.0), ("right", 3.0))]
     return pd.concat(both).sort_values(["Time(s)", "DeviceName"])
 
 
@@ -161,12 +157,9 @@ log.csv("names over two lines: the sensor above, its axis beneath",
 
 
 def _levels(world: World) -> pd.DataFrame:
-    names = [("gyro_dps", a) for a in "xyz"] + [("accel_g", a) for a in "xyz"]
-    return pd.DataFrame(
-        np.column_stack([world.dps, world.g]),
-        index=pd.Index(world.t_s, name="t_s"),
-        columns=pd.MultiIndex.from_tuples(names),
-    )
+    names = pd.MultiIndex.from_product([["gyro_dps", "accel_g"], [*"xyz"]])
+    at = pd.Index(world.t_s, name="t_s")
+    return pd.DataFrame(np.column_stack([world.dps, world.g]), at, names)
 
 
 log.csv("names over two lines, as pandas writes columns of two levels", _levels, index=True)

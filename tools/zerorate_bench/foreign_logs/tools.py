@@ -1,4 +1,4 @@
-"""Logs of further tools: wearables, terminals, makers' programs, public data sets."""
+"""Logs of further tools: wearables, straps, cameras, terminals, makers' programs, data sets."""
 
 import json
 
@@ -33,24 +33,21 @@ log.files("MbientLab's MetaWear, its file of rates", _METAWEAR.format("Gyroscope
 log.files("MbientLab's MetaWear, the folder of its files", "in", _metawear)
 
 
-def _sensor_server(world: World, typed: bool) -> str:
+def _sensor_server(world: World, *kinds: str) -> str:
     """A message a line, of two sensors, each with its type, or of one."""
-    kinds = {"gyroscope_uncalibrated": world.rad}
-    if typed:
-        kinds["accelerometer"] = world.mps2
-    lines = [
-        {"accuracy": 3, "timestamp": at, "values": values.tolist()}
-        | ({"type": f"android.sensor.{kind}"} if typed else {})
-        for at, *of in zip(world.ns.tolist(), *kinds.values())
-        for kind, values in zip(kinds, of)
-    ]
+    rows = {"gyroscope_uncalibrated": world.rad.tolist(), "accelerometer": world.mps2.tolist()}
+    lines = [{"accuracy": 3, "timestamp": at, "values": rows[kind][n]}
+        | ({"type": f"android.sensor.{kind}"} if len(kinds) > 1 else {})
+        for n, at in enumerate(world.ns.tolist()) for kind in kinds]
     return "".join(f"{json.dumps(line)}\n" for line in lines)
 
 
 log.text("Android's SensorServer, messages of one sensor",
-    lambda w: _sensor_server(w, typed=False), "gyroscope.jsonl", words="--gyro-unit rad/s")
+    lambda w: _sensor_server(w, "gyroscope_uncalibrated"), "gyroscope.jsonl",
+    words="--gyro-unit rad/s")
 log.text("Android's SensorServer, messages of two sensors",
-    lambda w: _sensor_server(w, typed=True), "in.jsonl", words="--gyro-unit rad/s")
+    lambda w: _sensor_server(w, "gyroscope_uncalibrated", "accelerometer"), "in.jsonl",
+    words="--gyro-unit rad/s")
 log.csv("SensorLog of iOS: bars between the columns",
     lambda w: table("loggingTime(txt),loggingSample(N),accelerometerAcceleration{XYZ}(G),"
         "gyroTimestamp_sinceReboot(s),gyroRotation{XYZ}(rad/s),label(N)",
@@ -183,12 +180,9 @@ log.csv("PuTTY's log of a sketch that prints names and rows",
 
 
 def _influx(world: World) -> pd.DataFrame:
-    said = world.dates("%Y-%m-%dT%H:%M:%S.%fZ", 6)
-    rows = [
-        (world.each(""), world.each(n), said, world.dps[:, n], world.each(f"gyro_{axis}"))
-        for n, axis in enumerate("xyz")
-    ]
-    return pd.concat([table("result,table,_time,_value,_field", *of) for of in rows])
+    said, names = world.dates("%Y-%m-%dT%H:%M:%S.%fZ", 6), "result,table,_time,_value,_field"
+    return pd.concat([table(names, world.each(""), world.each(n), said, of, world.each(f"gyro_{a}"))
+        for n, (a, of) in enumerate(zip("xyz", world.dps.T))])
 
 
 log.csv("InfluxDB's annotated CSV: a field on each row",
@@ -234,12 +228,9 @@ log.files("phyphox: rates and acceleration in one zip, of which one table ends s
 
 
 def _lists_of_two(world: World) -> str:
-    of = {"accelerometer": world.mps2, "gyroscope": world.rad}
     at = (world.ns // 10**6).tolist()
-    said = {
-        name: [{"timestamp": t, **dict(zip("xyz", v))} for t, v in zip(at, values.tolist())]
-        for name, values in of.items()
-    }
+    said = {name: [{"timestamp": t, **dict(zip("xyz", v))} for t, v in zip(at, values.tolist())]
+        for name, values in (("accelerometer", world.mps2), ("gyroscope", world.rad))}
     return json.dumps(said)
 
 
@@ -357,3 +348,71 @@ def _topics(world: World) -> str:
 
 log.text("mosquitto_sub -v: a topic before the JSON of each sensor", _topics,
     words="--gyro-unit dps --time-unit ms")
+
+_GYROFLOW = """\
+GYROFLOW IMU LOG
+version,1.3
+id,custom_logger
+orientation,YxZ
+tscale,{}
+gscale,0.00122173
+ascale,0.000244140625
+"""
+
+
+def _gcsv(world: World, ticks_a_second: float) -> pd.DataFrame:
+    counts = world.counts(gyro=1 / np.degrees(0.00122173), accel=4096)
+    return table("t,g{xyz},a{xyz}", world.whole(ticks_a_second), *counts)
+
+
+log.csv("Gyroflow, .gcsv: counts, whose scales stand above the table",
+    lambda w: _gcsv(w, 1e3), _GYROFLOW.format(0.001), name="in.gcsv")
+log.csv("Gyroflow, .gcsv: time in counts of a tenth of a millisecond",
+    lambda w: _gcsv(w, 1e4), _GYROFLOW.format(0.0001), name="in.gcsv")
+
+
+def _lists(world: World) -> list[np.ndarray]:
+    """Of each axis: a list of 25 readings in each cell."""
+    return [np.array([str(part.tolist()) for part in axis.reshape(-1, 25)]) for axis in world.dps.T]
+
+
+log.csv("a watch's table: a list of 25 readings in each cell",
+    lambda w: table("timestamp_s,gyro_{xyz}", w.t_s[::25], *_lists(w)), words="--gyro-unit dps")
+log.csv("a watch's table: three rates in a cell, [x, y, z]",
+    lambda w: table("timestamp_s,heart_rate,gyro", w.t_s, 70 + w.count % 9,
+        [str(row.tolist()) for row in w.dps]), words="--gyro-unit dps")
+log.csv("Garmin FIT's CSV: field, value and units take turns",
+    lambda w: table("Type,Local Number,Message,Field 1,Value 1,Units 1,Field 2,Value 2,Units 2",
+        *map(w.each, ("Data", 3, "gyroscope_data", "timestamp_ms")), w.whole(1e3), w.each("ms"),
+        w.each("gyro_x"), [json.dumps(row.tolist()).replace(", ", "|") for row in w.dps],
+        w.each("deg/s")))
+log.csv("Axivity AX6, with names and a temperature",
+    lambda w: table("Time,Accel-{XYZ} (g),Gyro-{XYZ} (d/s),Temp (C)",
+        w.dates("%Y-%m-%d %H:%M:%S.%f", 3), w.g, w.dps, w.degc))
+
+
+def _numbers(world: World) -> dict[str, str]:
+    imu = table("t,{abcdefg}", at := world.whole(1e6), world.rad, world.mps2, world.degc)
+    tables = {"IMU.txt": imu, "ATT.txt": table("t,{abc}", at, world.g)}
+    return {name: csv(of, sep=" ", header=False) for name, of in tables.items()}
+
+
+log.files("text without names in a zip: numbers of a board's files", "in.zip", _numbers)
+
+
+def _of_25_samples(world: World) -> str:
+    said = [dict(zip("xyz", row.tolist())) for row in world.dps]
+    parts = [{"ts": 40 * n, "gyro": said[n : n + 25]} for n in range(0, world.samples, 25)]
+    return "".join(json.dumps(part) + "\n" for part in parts)
+
+
+def _mvnx(world: World) -> str:
+    frames = (f'<frame time="{n}"><x>{row}</x></frame>' for n, row in enumerate(world.dps.tolist()))
+    return f'<?xml version="1.0"?>\n<mvnx version="4">{"".join(frames)}</mvnx>\n'
+
+
+log.text("a watch's JSON lines: a list of 25 samples in each", _of_25_samples, "in.jsonl")
+log.text("Xsens MTw, .mvnx", _mvnx, "in.mvnx")
+log.csv("a time by another name: Zeit;wx;wy;wz",
+    lambda w: table("Zeit,w{xyz}", w.t_s, w.rad).round(5), words="--gyro-unit rad/s", sep=";",
+    decimal=",")

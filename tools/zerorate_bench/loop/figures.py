@@ -59,16 +59,12 @@ class Figure:
     high: float | None = None
     unit: str = "%"
 
-    @property
-    def met(self) -> bool | None:
-        """Whether the measured value keeps the limit; None without one."""
-        if self.limit is None:
-            return None
-        return self.value <= self.limit if self.at_most else self.value >= self.limit
-
     def to_dict(self) -> dict[str, Any]:
-        """Plain values with the verdict."""
-        return {**asdict(self), "met": self.met}
+        """Plain values, and whether the measured value keeps the limit; None without one."""
+        met = None
+        if self.limit is not None:
+            met = self.value <= self.limit if self.at_most else self.value >= self.limit
+        return {**asdict(self), "met": met}
 
 
 def share(
@@ -92,9 +88,8 @@ def figures(outcomes: list[Outcome], whole: bool = True) -> list[Figure]:
     rows: Rows = defaultdict(list)
     for o in outcomes:
         rows[o.device.row].append(o)
-    every = [f for f in _figures(rows) if f.devices]
-    every += _made_worse(outcomes)
-    return every if whole else [f for f in every if not f.name.startswith(_OF_ALL)]
+    every = (f for f in _figures(rows) if f.devices)
+    return [f for f in every if whole or not f.name.startswith(_OF_ALL)]
 
 
 def _figures(rows: Rows) -> Iterator[Figure]:
@@ -117,6 +112,11 @@ def _figures(rows: Rows) -> Iterator[Figure]:
         yield share(f"2x {effects}: both named", some, _named, 90.0)
     yield from _many_widths(rows)
     yield from _from_files(rows)
+    blocks = [o for row, of in rows.items() if row not in (*ROWS, TOLD, CORNERS) for o in of]
+    name = "held-out error made worse by more than 2 %"
+    for hidden, which in ((False, name), (True, f"{name}, cause not recorded")):
+        some = [o for o in blocks if o.device.row.startswith(HIDDEN) == hidden]
+        yield share(which, some, lambda o: o.worse, 2.0, at_most=True)
 
 
 def _where_nothing_is(rows: Rows) -> Iterator[Figure]:
@@ -250,12 +250,3 @@ def _of_many_widths(
         errors = np.mean([(o.after, o.unpruned) for o in group], axis=0)
         yield _times(f"{name}: error after, mean", errors[0], after, len(group))
         yield _times(f"{name}: were nothing withdrawn", errors[1], None, len(group))
-
-
-def _made_worse(outcomes: list[Outcome]) -> Iterator[Figure]:
-    name = "held-out error made worse by more than 2 %"
-    blocks = [o for o in outcomes if o.device.row not in (*ROWS, TOLD, CORNERS)]
-    for hidden, which in ((False, name), (True, f"{name}, cause not recorded")):
-        some = [o for o in blocks if o.device.row.startswith(HIDDEN) == hidden]
-        if some:
-            yield share(which, some, lambda o: o.worse, 2.0, at_most=True)

@@ -10,6 +10,7 @@ import numpy as np
 from zerorate_tools.loop.read.still import still_ticks
 from zerorate_tools.loop.read.ticks import read_ticks
 from zerorate_tools.recordings import Recording, Scales, write_recording
+from zerorate_tools.simulate.device import counts
 
 from ..children import close_cost
 from ..public_data import data_folder
@@ -58,12 +59,11 @@ def resting(
     at_s = np.arange(0, _LONG_S, 1 / odr_hz)
     turning = (at_s >= _TURN_S[0]) & (at_s < _TURN_S[1])
     columns = {"t_us": np.rint(at_s * 1e6).astype(np.int64)}
-    for name in ("gx", "gy", "gz"):
-        rate = 1.3 + turn_dps * turning + rng.normal(0, noise_dps, len(at_s))
-        columns[name] = np.round(rate * 131).astype(np.int32)
-    for name, g in (("ax", 0.0), ("ay", 0.0), ("az", 1.0)) if accel else ():
-        force = g + rng.normal(0, 0.004, len(at_s))
-        columns[name] = np.round(force * 16384).astype(np.int32)
+    rate = 1.3 + turn_dps * turning + rng.normal(0, noise_dps, (3, len(at_s)))
+    columns |= counts("g", rate.T * 131)
+    if accel:
+        force = np.array([0.0, 0.0, 1.0]) + rng.normal(0, 0.004, (3, len(at_s))).T
+        columns |= counts("a", force * 16384)
     scales = Scales("MPU-6050", odr_hz, 131.0, 16384.0 if accel else None)
     path = folder / "rest.parquet"
     write_recording(Recording(columns, scales, "rest"), path)

@@ -5,7 +5,7 @@ half, on the other half, as a later power-on at temperatures that the half has s
 """
 
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -62,14 +62,12 @@ def _with_step(recording: Recording, size_dps: float) -> Recording:
 
 
 STEP, FIRST, SECOND = "a step put in", "its first half", "its second half"
-BEREFT = "without accelerometer", "without temperature"
-VARIANTS: dict[str, Callable[[Recording], list[Recording]]] = {
-    FIRST: lambda r: [_cut(r, 0.0, 0.5)],
-    SECOND: lambda r: [_cut(r, 0.5, 1.0)],
-    "its middle third": lambda r: [_cut(r, 1 / 3, 2 / 3)],
-    "two halves, as two recordings": lambda r: [_cut(r, 0.0, 0.5), _cut(r, 0.5, 1.0)],
-    BEREFT[0]: lambda r: [_without(r, ACCEL)],
-    BEREFT[1]: lambda r: [_without(r, [TEMP])],
+#: Variant -> its recordings, by shares of the samples.
+CUTS = {
+    FIRST: [(0.0, 0.5)],
+    SECOND: [(0.5, 1.0)],
+    "its middle third": [(1 / 3, 2 / 3)],
+    "two halves, as two recordings": [(0.0, 0.5), (0.5, 1.0)],
 }
 
 
@@ -98,8 +96,11 @@ def _imported(path: Path, scratch: Path) -> Recording:
 
 def _of(recording: Recording, scratch: Path) -> dict[str, list[Recording]]:
     """Those variants that change anything."""
-    had = dict(zip(BEREFT, (recording.has_accel, recording.has_temp)))
-    made = {name: make(recording) for name, make in VARIANTS.items() if had.get(name, True)}
+    made = {name: [_cut(recording, *span) for span in spans] for name, spans in CUTS.items()}
+    if recording.has_accel:
+        made["without accelerometer"] = [_without(recording, ACCEL)]
+    if recording.has_temp:
+        made["without temperature"] = [_without(recording, [TEMP])]
     log = _written(recording, scratch / "whole.parquet")
     noise = noise_dps(sessions_of([read_ticks(log, tick_seconds(log))])[0])
     return made | {STEP: [_with_step(recording, _STEP_NOISES * noise)]}
@@ -128,7 +129,7 @@ def _looked_at(
     if variant == STEP:
         row["found_the_step"] = _is_listed(result["events"], made[0])
     if variant in (FIRST, SECOND):
-        other = VARIANTS[SECOND if variant == FIRST else FIRST](whole)[0]
+        other = _cut(whole, *CUTS[SECOND if variant == FIRST else FIRST][0])
         row |= _elsewhere(analysis, model, logs[0], _written(other, scratch / "other.parquet"))
     return row
 
