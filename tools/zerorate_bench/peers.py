@@ -52,6 +52,7 @@ Points = Callable[[Array, Array], tuple[Array, Array]]
 
 
 def _fitted_on_the_first(sessions: Sequence[Given], points: Points) -> list[Array]:
+    """Each session's bias (n, 3), dps."""
     first = sessions[0]
     temp, rates = np.empty(0), np.empty((0, 3))
     if first.temp_degc is not None:
@@ -82,11 +83,6 @@ def _step_means(temp: Array, rates: Array, steps: NDArray[np.int64]) -> tuple[Ar
     filled = counts > 0
     means = [np.bincount(steps, values)[filled] / counts[filled] for values in (temp, *rates.T)]
     return means[0], np.stack(means[1:], axis=1)
-
-
-#: Each session's bias (n, 3), dps, by PX4's rules and by ArduPilot's.
-px4_cubic = partial(_fitted_on_the_first, points=_px4_points)
-ardupilot_cubic = partial(_fitted_on_the_first, points=_ardupilot_points)
 
 
 class Judged(ABC):
@@ -215,24 +211,24 @@ def within_two_sigma(
     return float(np.nanmean(inside)), float(np.nanmean(first))
 
 
-ONLINE: dict[str, Peer] = {
-    "mean of the first 10 s": first_seconds,
-    "imufusion": fusion,
-    "vqf": vqf_default,
-    "vqf, clip 25 dps": vqf_clip_raised,
-}
-OFFLINE: dict[str, Peer] = {
-    "PX4-style cubic": px4_cubic,
-    "ArduPilot-style cubic": ardupilot_cubic,
-}
+#: How a way is run -> its name in the tables -> the way.
 OURS: dict[str, Peer] = {
     "US 9,354,080's rules": firmware(document=True),
     "US 9,354,080's rules, on rests": firmware(document=True, every=False),
     "zerorate": firmware(),
 }
-PEERS = {**ONLINE, **OFFLINE, **OURS}
-HOW = {
-    **dict.fromkeys(ONLINE, "on the device, knowing nothing"),
-    **dict.fromkeys(OFFLINE, "fitted to the first power-on and its true rests"),
-    **dict.fromkeys(OURS, "on the device, after the first power-on"),
+_WAYS: dict[str, dict[str, Peer]] = {
+    "on the device, knowing nothing": {
+        "mean of the first 10 s": first_seconds,
+        "imufusion": fusion,
+        "vqf": vqf_default,
+        "vqf, clip 25 dps": vqf_clip_raised,
+    },
+    "fitted to the first power-on and its true rests": {
+        "PX4-style cubic": partial(_fitted_on_the_first, points=_px4_points),
+        "ArduPilot-style cubic": partial(_fitted_on_the_first, points=_ardupilot_points),
+    },
+    "on the device, after the first power-on": OURS,
 }
+PEERS = {name: peer for ways in _WAYS.values() for name, peer in ways.items()}
+HOW = {name: how for how, ways in _WAYS.items() for name in ways}

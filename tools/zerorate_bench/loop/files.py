@@ -6,9 +6,9 @@ rest are run as well, so that the quick devices of the other rows are known to s
 
 import tempfile
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from zerorate_tools.closing import load
@@ -56,6 +56,7 @@ _POSED = _on_each_face(_rest(120, 240), _POSE)
 _HANDLED = [_rest(60, 90), {"kind": "hand", "s": [30, 60]}]
 _IN_THE_HAND = _on_each_face(_rest(40, 70), {"kind": "hand", "s": [20, 30]}, _POSE)
 _OF_ACCELERATION = [[1.0, 0.3, 0.0], [0.0, 1.0, -0.3], [0.3, 0.0, 1.0]]
+_BY_ACCELERATION = {"kind": "linear-g", "dps": 0.08, "matrix": _OF_ACCELERATION}
 #: Seconds of a power-on before its error in motion counts: the turn-on offset is learned first.
 _LEARNED_S = 600
 _FLOOR_DPS = 0.002
@@ -68,8 +69,7 @@ _INTERFERENCE: dict[str, Any] = {
 HELD_IN_A_HAND = "files, acceleration 80 mdps, a third of it in the hand"
 
 
-@dataclass(frozen=True)
-class Row:
+class Row(NamedTuple):
     """What of a description differs, the effect that must be named ("" for none), and whether the
     attitude is recorded beside it."""
 
@@ -80,36 +80,28 @@ class Row:
     latitude_deg: float | None = None
 
 
-def _twice_the_floor(**effect: Any) -> dict[str, Any]:
-    return {**effect, "rms_dps": 2 * _FLOOR_DPS}
+def _line(hz: float) -> dict[str, Any]:
+    return {"kind": "periodic", "hz": hz, "rms_dps": 2 * _FLOOR_DPS}
 
 
-_HISTORY = _twice_the_floor(kind="hysteresis", beyond_temperature=True)
+def _scale(dps: object, **more: object) -> dict[str, Any]:
+    return {"kind": "scale", "dps": dps, **more}
+
+
+_HISTORY = {"kind": "hysteresis", "beyond_temperature": True, "rms_dps": 2 * _FLOOR_DPS}
 ROWS = {
     "files, nothing": Row(),
     "files, nothing, turned over with Earth in it": Row(motion=_POSED, latitude_deg=50.0),
     "files, nothing, handled with attitude": Row(motion=_HANDLED, attitude=True),
     "files, hysteresis at 2x": Row("thermal-hysteresis", effect=_HISTORY),
-    "files, a line of 40 s at 2x": Row(
-        "periodic-interference", effect=_twice_the_floor(kind="periodic", hz=0.025)
-    ),
-    "files, mains folded to 1.7 Hz at 2x": Row(
-        "periodic-interference", effect=_twice_the_floor(kind="periodic", hz=51.7)
-    ),
-    "files, scale 1 % beside gravity": Row(
-        "scale-factor", _TURNED, {"kind": "scale", "dps": [0.01, -0.01, 0.01]}
-    ),
-    "files, cross-axis 1 % beside gravity": Row(
-        "cross-axis", _TURNED, {"kind": "scale", "dps": 1.0, "matrix": _CROSS}
-    ),
+    "files, a line of 40 s at 2x": Row("periodic-interference", effect=_line(0.025)),
+    "files, mains folded to 1.7 Hz at 2x": Row("periodic-interference", effect=_line(51.7)),
+    "files, scale 1 % beside gravity": Row("scale-factor", _TURNED, _scale([0.01, -0.01, 0.01])),
+    "files, cross-axis 1 % beside gravity": Row("cross-axis", _TURNED, _scale(1.0, matrix=_CROSS)),
     "files, scale 0.1 % beside attitude": Row(
-        "scale-factor", _HANDLED, {"kind": "scale", "dps": [0.001, -0.001, 0.001]}, attitude=True
+        "scale-factor", _HANDLED, _scale([0.001, -0.001, 0.001]), attitude=True
     ),
-    HELD_IN_A_HAND: Row(
-        "linear-acceleration",
-        _IN_THE_HAND,
-        {"kind": "linear-g", "dps": 0.08, "matrix": _OF_ACCELERATION},
-    ),
+    HELD_IN_A_HAND: Row("linear-acceleration", _IN_THE_HAND, _BY_ACCELERATION),
     "files, readings 2 ms late": Row(
         "sample-timing", _HANDLED, {"kind": "timing", "delay_ms": 2.0}, attitude=True
     ),

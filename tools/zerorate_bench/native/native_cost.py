@@ -173,13 +173,8 @@ def native_cost(work: Workload) -> dict[str, dict[str, Any]]:
     Each figure: instructions (mean), instructions_c (mean, C -O2), median and worst, and for the
     Cortex-M0+ cycles, cycles_worst. Raises ZerorateError if the states of both differ.
     """
-    return {
-        processor: {
-            "alone": _against_c(work, processor, 1),
-            "bursts": _against_c(work, processor, AT_ONCE),
-        }
-        for processor in PROCESSORS
-    }
+    ways = {"alone": 1, "bursts": AT_ONCE}
+    return {p: {how: _against_c(work, p, n) for how, n in ways.items()} for p in PROCESSORS}
 
 
 def code_bytes() -> dict[str, dict[str, int]]:
