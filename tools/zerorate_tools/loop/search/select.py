@@ -246,10 +246,11 @@ class Search:
         """An effect that the later ones explain is taken out again; the others' parameters are
         refined together.
         """
+        latest = len(self.found) - 1
         for i in reversed(range(self.kept, len(self.found))):
             c = self.found[i].candidate
             rest = [*self.straight, *self.terms(leave=i)]
-            if self.examiner.is_idle(c, rest):
+            if i < latest and self.examiner.is_idle(c, rest):
                 self.refused.append((c.label, "explained by effects found later"))
                 self.dropped.add(c.label)
                 del self.found[i]
