@@ -10,8 +10,8 @@ from .surrogates import COUNT
 def block_bootstrap(
     parts: list[np.ndarray], statistic: Callable[[np.ndarray], np.ndarray]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """2.5 % and 97.5 % points of a statistic of (n, ...) rows drawn in runs of the root of n
-    (Kuensch 1989): as many as each is long, where the noise's memory is unknown.
+    """2.5 % and 97.5 % points of a statistic of (n, ...) rows drawn in runs of sqrt(n) rows
+    (Kuensch 1989): how far the noise remembers is not known.
 
     parts: one array a session, rows in time order, NaN rows dropped; statistic: of the rows drawn.
     """

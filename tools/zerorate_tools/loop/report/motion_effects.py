@@ -52,7 +52,7 @@ def heading_in_words(m: Mapping[str, Any]) -> str:
     before, after = f"{m['lost_before']:.2f}", f"{m['lost_after']:.2f}"
     said = f"it turns the heading by {before} -> {after} degrees a minute"
     if before == after:  # axes turned alike
-        said = "it tilts, but turns no heading"
+        said = "it changes the tilt, not the heading"
     if "heading_before" not in m:
         return said
     return f"{said}; against the attitude {m['heading_before']:.2f} -> {m['heading_after']:.2f}"
