@@ -318,6 +318,7 @@ SECONDS = pd.Timestamp("2026-05-01") + pd.to_timedelta(np.arange(500) // 100, "s
         ({"A": SINCE_NS // 10**9, "B": SINCE_NS % 10**9}, "t_us=A:s+B:ns", 10_000),
         ({"Timestamp": SECONDS, "Milliseconds": np.arange(500) * 10}, "", 10_000),
         ({"ticks": np.arange(500) * 250 + 2**32 - 999}, "t_us=ticks:x40", 10_000),
+        ({"t_ms": (65_000 + np.arange(500) * 300) % 2**16}, "", 300_000),
     ],
 )  # fmt: skip
 def test_the_time_is_found_among_columns(tmp_path, columns, mapping, step_us):

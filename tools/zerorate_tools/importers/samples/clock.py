@@ -12,8 +12,11 @@ from ...recordings.recording import GYRO
 from .spool import PLACE, TIME, Spool
 
 _LONGEST_PAUSE_US = 10_000_000
+#: Of what a counter holds: a log that begins anew comes as near to that by chance once in a hundred.
+_PAUSE_OF_SPAN = 0.01
 #: Stamps on both sides of a torn one are nearer to each other; of all, so many are torn at most.
 _BESIDE_US, _MOST_TORN = 1e6, 0.01
+_COUNTER_BITS = (16, 24, 30, 31, 32)
 _HOUR_US, _DAY_US = 3_600e6, 86_400e6
 #: Rows may be rarer than a counter's pause where midnight falls between two of them.
 _LONGEST_NIGHT_US = 3_600e6
@@ -42,7 +45,7 @@ def whole_stamps(t_us: np.ndarray) -> np.ndarray:
 
 
 class Unwrapped:
-    """Adds what a counter of 30, 31 or 32 bits lost where it ran over, or midnight a time of day.
+    """Adds what a counter of 16 to 32 bits lost where it ran over, or midnight a time of day.
 
     step_us: what one count is worth, in microseconds; 0 for a column that is no counter.
     """
@@ -51,7 +54,16 @@ class Unwrapped:
         self._step_us = step_us
         self._last = -np.inf
         self._added = 0.0
-        self.notes: list[str] = []
+        self._ran_over: dict[str, list[int]] = {}
+
+    @property
+    def notes(self) -> list[str]:
+        """In words, a line each clock, where any ran over."""
+        return [
+            f"a clock of {clock} ran over {'' if len(rows) == 1 else f'{len(rows)} times, first '}"
+            f"at row {rows[0]}: counted on"
+            for clock, rows in self._ran_over.items()
+        ]
 
     def __call__(self, t_us: np.ndarray, place: np.ndarray) -> np.ndarray:
         """(n,) the same stamps, going on where the counter ran over."""
@@ -63,18 +75,18 @@ class Unwrapped:
             t_us[at:] += span
             self._added += span
             if span:
-                row = int(place[at]) + 1
-                self.notes.append(f"a clock of {clock} ran over at row {row}: counted on")
+                self._ran_over.setdefault(clock, []).append(int(place[at]) + 1)
         return t_us
 
     def _clock(self, earlier: float, later: float) -> tuple[str, float]:
         """What ran over, and microseconds that it holds; 0 where nothing did."""
-        spans = {f"{bits} bits": 2.0**bits * self._step_us for bits in (30, 31, 32)}
+        spans = {f"{bits} bits": 2.0**bits * self._step_us for bits in _COUNTER_BITS}
         if not self._step_us:
             spans["60 minutes"] = _HOUR_US
         for clock, span in {**spans, "24 hours": _DAY_US}.items():
             night = clock == "24 hours" and not self._step_us
-            longest = _LONGEST_NIGHT_US if night else _LONGEST_PAUSE_US
+            longest = min(_LONGEST_PAUSE_US, _PAUSE_OF_SPAN * span)
+            longest = _LONGEST_NIGHT_US if night else longest
             if earlier < span and 0 < later + span - earlier < longest:
                 return clock, span
         return "", 0.0
