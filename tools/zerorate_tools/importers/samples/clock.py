@@ -12,7 +12,7 @@ from ...recordings.recording import GYRO
 from .spool import PLACE, TIME, Spool
 
 _LONGEST_PAUSE_US = 10_000_000
-#: Of what a counter holds: a log that begins anew comes as near to that by chance once in a hundred.
+#: Of what a counter holds: a log that begins anew comes so near by chance once in a hundred.
 _PAUSE_OF_SPAN = 0.01
 #: Stamps on both sides of a torn one are nearer to each other; of all, so many are torn at most.
 _BESIDE_US, _MOST_TORN = 1e6, 0.01
