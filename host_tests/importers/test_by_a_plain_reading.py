@@ -10,8 +10,7 @@ from hypothesis import strategies as st
 from zerorate_tools.errors import BadRecording
 from zerorate_tools.importers import Options, parsed_mapping
 from zerorate_tools.importers.importing import _gathered, _How, _ready
-from zerorate_tools.importers.samples.counts import Counts
-from zerorate_tools.importers.samples.gather import _are_held
+from zerorate_tools.importers.samples.gather import Counts, _are_held
 from zerorate_tools.importers.samples.spool import Runs
 from zerorate_tools.importers.tables.table import Chunk, Table
 from zerorate_tools.numbers import duration

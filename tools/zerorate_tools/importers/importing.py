@@ -22,14 +22,8 @@ from .columns.mapping import Mapped
 from .columns.plan import Plan, left_aside, planned
 from .kinds import table_of, table_of_files
 from .report import Options, Report
+from .samples import conversion
 from .samples.between import refuse_two_recordings
-from .samples.conversion import (
-    Common,
-    absent,
-    fitting_scales,
-    integer_batches,
-    without_wide_counts,
-)
 from .samples.doubts import doubts
 from .samples.gather import Gathered, gathered
 from .tables.sensors import by_own_times, told_apart
@@ -204,7 +198,7 @@ def _gathered(table: Table, path: Path, how: _How, folder: Path | None) -> _Sour
         instance=instance,
         without_time=options.hz is not None,
     )
-    options = without_wide_counts(plan, options)
+    options = conversion.without_wide_counts(plan, options)
     raw = "gyro" in plan.raw
     fast_dps = np.inf if raw or options.gyro_lsb_per_dps else FASTEST_DPS
     found = gathered(table, plan, path, hz=options.hz, fast_dps=fast_dps, folder=folder)
@@ -215,20 +209,22 @@ def _gathered(table: Table, path: Path, how: _How, folder: Path | None) -> _Sour
 
 def _ready(opened: list[_Import | _Source]) -> list[_Import]:
     """Each as integers, all that were read in one scale."""
-    common = Common([one.found for one in opened if isinstance(one, _Source)])
+    common = conversion.Common([one.found for one in opened if isinstance(one, _Source)])
     return [one if isinstance(one, _Import) else _converted(one, common) for one in opened]
 
 
-def _converted(source: _Source, common: Common) -> _Import:
+def _converted(source: _Source, common: conversion.Common) -> _Import:
     path, table, plan, found = source.path, source.table, source.plan, source.found
     report = Report(found.rows, dropped=found.dropped, notes=found.notes)
     _leave_out_unread(found, plan, report)
-    scales = fitting_scales(found, common, plan, table, source.options, path, report.notes)
+    scales = conversion.fitting_scales(
+        found, common, plan, table, source.options, path, report.notes
+    )
     report.doubts += doubts(found, plan, table, scales, path)
-    report.notes += [*absent(plan, table.names, path), *left_aside(plan, table)]
+    report.notes += [*conversion.absent(plan, table.names, path), *left_aside(plan, table)]
     names = [n for n in COLUMNS if n in found.spool.names]
     names += [n for n in plan.wanted if n not in COLUMNS]
-    batches = integer_batches(found, plan, scales, path, report)
+    batches = conversion.integer_batches(found, plan, scales, path, report)
     return _Import(scales, names, batches, report)
 
 

@@ -61,7 +61,7 @@ def table_of(path: Path, instance: int, advance: Callable[[float], None]) -> Ite
     elif path.is_dir():
         with _opened(advance) as opened:
             yield folder_of_tables(path, opened)
-    elif _starts(path, _ZIP):
+    elif _first(path).startswith(_ZIP):
         with archive(path) as unpacked, _opened(advance) as opened:
             if unpacked.is_dir():
                 yield folder_of_tables(unpacked, opened, path)
@@ -100,19 +100,21 @@ def _opened(advance: Callable[[float], None]) -> Iterator[Callable[[Path], Table
 def _reader(path: Path) -> str | None:
     if path.is_dir():
         return "ros_bag" if (path / "metadata.yaml").is_file() else None
-    if _starts(path, _DATABASE) and path.suffix.lower() != ".db3":
+    first = _first(path)
+    if first.startswith(_DATABASE) and path.suffix.lower() != ".db3":
         do = "write its table as CSV"
         raise BadRecording(path, "a database, and no .db3 of ROS 2", do=do)
-    if _starts(path, _ZIP):
+    if first.startswith(_ZIP):
         return "numpy_file" if _holds_arrays(path) else None
-    by_magic = next((name for magic, name in _MAGIC.items() if _starts(path, magic)), None)
-    if by_magic:
-        if by_magic in _OF_MESSAGES and _goes_on_with_zeros(path):
+    if by_magic := next((name for magic, name in _MAGIC.items() if first.startswith(magic)), None):
+        behind = first[_LONGEST_START:]
+        if by_magic in _OF_MESSAGES and behind == bytes(_ZEROS):
             raise BadRecording(path, "nothing but zeros behind its start", do="copy the file again")
         return by_magic
     if _JSON.match(head(path, 1000)[0].removeprefix(b"\xef\xbb\xbf")):
         return "json_file"
-    return None if _is_text(path) else _SUFFIXES.get(path.suffix.lower())
+    is_text = b"\n" in first and not first.translate(None, _OF_TEXT)
+    return None if is_text else _SUFFIXES.get(path.suffix.lower())
 
 
 def _holds_arrays(path: Path) -> bool:
@@ -124,19 +126,6 @@ def _holds_arrays(path: Path) -> bool:
     return bool(names) and all(name.endswith(".npy") for name in names)
 
 
-def _is_text(path: Path) -> bool:
-    """Whether a file is text, whatever its name ends with."""
+def _first(path: Path) -> bytes:
     with open(path, "rb") as file:
-        first = file.read(4096)
-    return b"\n" in first and not first.translate(None, _OF_TEXT)
-
-
-def _goes_on_with_zeros(path: Path) -> bool:
-    with open(path, "rb") as file:
-        file.seek(_LONGEST_START)
-        return file.read(_ZEROS) == bytes(_ZEROS)
-
-
-def _starts(path: Path, magic: bytes) -> bool:
-    with open(path, "rb") as file:
-        return file.read(len(magic)) == magic
+        return file.read(_LONGEST_START + _ZEROS)

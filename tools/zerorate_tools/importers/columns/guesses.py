@@ -151,10 +151,12 @@ def likely_columns(table: Table) -> list[str]:
     times += [name for name in values if name not in times and only_grows(values[name])]
     time = next((name for name in times if not counts_rows(values[name])), None)
     out = [] if time is None else [f"t_us={time}:{likely_time(values[time])}"]
-    rest = {n: values[n] for n in values if n not in times and _varies(values[n])}
+    rest = {n: v for n, v in values.items() if n not in times}
     moving = {name: column for name, column in rest.items() if np.ptp(column) > 0}
-    # where some readings change, what never does is a covariance or a setting
-    rest = moving if len(moving) >= len(GYRO) else rest
+    if len(moving) >= len(GYRO):
+        rest = moving  # what never changes is a covariance or a setting then
+    else:  # nor is one whole number throughout a reading: that of a sensor or of a kind of line
+        rest = {n: v for n, v in rest.items() if n in moving or len(v) < 2 or v[0] % 1 or not v[0]}
     four = _quaternion(rest)
     rest = {name: column for name, column in rest.items() if name not in four}
     t_s = np.arange(whole.sum()) / _ANY_HZ
@@ -217,11 +219,6 @@ def _is_field(lengths: np.ndarray, dps: float) -> bool:
 
 def _beside(names: list[str], order: list[str]) -> bool:
     return order.index(names[-1]) - order.index(names[0]) == len(names) - 1
-
-
-def _varies(values: np.ndarray) -> bool:
-    """Not one whole number throughout, as that of a sensor or of a kind of line."""
-    return len(values) < 2 or np.ptp(values) > 0 or values[0] == 0 or values[0] % 1 != 0
 
 
 def _quaternion(values: Mapping[str, np.ndarray]) -> list[str]:

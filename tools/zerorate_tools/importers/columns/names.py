@@ -84,11 +84,9 @@ def gyro_groups(names: list[str]) -> list[dict[str, str]]:
     names = _of_three(names)
     groups = _groups(names, _GYRO, "g") or _groups(_in_units_of("gx", names), _LAST_AXIS, "g")
     groups = groups or _groups(names, _GYRO_OF, "g")
-    return sorted(groups, key=lambda group: _corrected(spelled(group["gx"])))
-
-
-def _corrected(text: str) -> int:
-    return 0 if _RAW.match(text) else 2 if _CORRECTED.match(text) else 1
+    texts = [spelled(group["gx"]) for group in groups]
+    order = [0 if _RAW.match(text) else 2 if _CORRECTED.match(text) else 1 for text in texts]
+    return [group for _, group in sorted(zip(order, groups), key=lambda both: both[0])]
 
 
 def accel_groups(names: list[str]) -> list[dict[str, str]]:

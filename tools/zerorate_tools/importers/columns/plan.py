@@ -12,23 +12,8 @@ import numpy as np
 from ...errors import BadRecording
 from ...recordings.recording import ACCEL, ATTITUDE, COLUMNS, GYRO, TEMP, TIME
 from ..tables.table import Chunk, Table
+from . import guesses
 from . import names as usual
-from .guesses import (
-    are_digits_of_clock,
-    are_whole,
-    as_long_as_gravity,
-    by_habit,
-    gravity_unit,
-    guessed_unit,
-    is_unit,
-    likely_columns,
-    likely_time,
-    likely_units_of_time,
-    of_long_time,
-    only_grows,
-    ready_words,
-    turns_as_gravity,
-)
 from .mapping import Mapped, factor_in, map_words, parsed_mapping
 from .units import RAW, TIME_S, factors_of, kind_of, other_unit, unit_in_name, units_of
 
@@ -112,7 +97,7 @@ def planned(
             do = "write seconds, or dates as 2026-05-01T12:00:00.250; or count the rows: --hz N"
             raise BadRecording(path, f"no time can be read from column {mapped.column!r}", do=do)
         if unit is None:
-            words = ready_words(target, wanted, first, t_s)
+            words = guesses.ready_words(target, wanted, first, t_s)
             unknown[mapped.column] = asked.setdefault(kind_of(target), words)
         if unit == RAW:
             raw.add(kind_of(target))
@@ -137,7 +122,7 @@ def _refuse_other_times(
         problem = f"column {column!r} in {unit} does not go on as {other!r} does"
         do = f"give {map_words(TIME, column, meant)}, or map {other!r} instead"
         raise BadRecording(path, problem, do=do)
-    if unit == "s" and column not in table.calendar and are_digits_of_clock(first[column]):
+    if unit == "s" and column not in table.calendar and guesses.are_digits_of_clock(first[column]):
         problem = f"column {column!r} goes from 59 to 100: the digits of a clock, as 141759.5"
         raise BadRecording(path, problem, do="write colons between them, as 14:17:59.5")
 
@@ -155,7 +140,7 @@ def _of_unknown(columns: list[str]) -> str:
 def _of_attitude(wanted: Mapping[str, Mapped], first: Mapping[str, np.ndarray]) -> dict[str, float]:
     """Factors that keep the digits of a unit quaternion, whose parts would all be 0 and 1."""
     parts = [wanted[n].column for n in ATTITUDE if n in wanted]
-    if len(parts) < len(ATTITUDE) or not is_unit(np.array([first[c] for c in parts])):
+    if len(parts) < len(ATTITUDE) or not guesses.is_unit(np.array([first[c] for c in parts])):
         return {}
     return dict.fromkeys(ATTITUDE, _PART)
 
@@ -185,7 +170,9 @@ def _found(
             problem = f"there are {last + 1} gyroscopes" if last else "there is one gyroscope"
             do = f"give --instance 0 to {last}" if last else "leave --instance away"
             raise BadRecording(path, problem, do=do)
-        names = groups[instance] if groups else _axes_of_a_gyro_file(table, path)
+        names = groups[instance] if groups else {}
+        if not groups and re.search("gyro|angular", path.name.lower()):
+            names = usual.bare_axes(table.names)  # phones write a file a sensor, with columns x y z
     gyro = {target: mapped.column for target, mapped in given.items()} | names
     names = {**names, **usual.most_alike(_with_gravity(table), gyro, instance)}
     temp = usual.temperature(table.names)
@@ -202,12 +189,16 @@ def _groups_of_rates(table: Table) -> list[dict[str, str]]:
     others, where nothing else is called as a force: then they are in g."""
     groups = usual.gyro_groups(table.names)
     if len(groups) > 1:  # counts behind what they were made into
-        groups.sort(key=lambda group: are_whole(*table.first_rows([*group.values()]).values()))
+        groups.sort(
+            key=lambda group: guesses.are_whole(*table.first_rows([*group.values()]).values())
+        )
     plain = next((one for one in groups if usual.spelled(one["gx"]) == "gx"), None)
     if plain is None or usual.accel_groups(table.names) or unit_in_name("gx", plain["gx"]):
         return groups
     columns = [*table.first_rows([*plain.values()]).values()]
-    is_force = as_long_as_gravity(columns) and (len(groups) > 1 or turns_as_gravity(columns))
+    is_force = guesses.as_long_as_gravity(columns) and (
+        len(groups) > 1 or guesses.turns_as_gravity(columns)
+    )
     return [one for one in groups if not (is_force and one is plain)]
 
 
@@ -217,7 +208,7 @@ def _with_gravity(table: Table) -> list[dict[str, str]]:
     if len(groups) < 2:
         return groups
     first = table.first_rows([name for group in groups for name in group.values()])
-    having = [one for one in groups if gravity_unit([first[name] for name in one.values()])]
+    having = [one for one in groups if guesses.gravity_unit([first[name] for name in one.values()])]
     return having or groups
 
 
@@ -227,7 +218,7 @@ def _split_time(table: Table) -> tuple[str, str, str] | None:
     for second, part, unit in () if of_minutes else usual.split_times(table.names):
         first = table.first_rows([second, part])
         is_part = np.nanmax(first[part], initial=0.0) * TIME_S[unit] < 1.0
-        if is_part and are_whole(first[second]):
+        if is_part and guesses.are_whole(first[second]):
             return second, part, unit
     return None
 
@@ -240,20 +231,14 @@ def _time_column(table: Table) -> str | None:
     if not found:
         other = [*sorted(table.calendar), *usual.in_units_of_time(table.names)]
         first = table.first_rows(list(dict.fromkeys(other))) if other else {}
-        return next((name for name, values in first.items() if only_grows(values)), None)
+        return next((name for name, values in first.items() if guesses.only_grows(values)), None)
     first = table.first_rows(found) if len(found) > 1 else {}
     differ = (n for n, values in first.items() if len(np.unique(values[values > 0])) > 1)
     usual_one = next(differ, found[0])
-    if len(found) == 1 or only_grows(first[usual_one]):
+    if len(found) == 1 or guesses.only_grows(first[usual_one]):
         return usual_one
-    finer = (n for n in usual.in_units_of_time(found) if only_grows(first[n]))
+    finer = (n for n in usual.in_units_of_time(found) if guesses.only_grows(first[n]))
     return next(finer, usual_one)
-
-
-def _axes_of_a_gyro_file(table: Table, path: Path) -> dict[str, str]:
-    """Phones write a file a sensor, Gyroscope.csv with columns x y z."""
-    named = re.search("gyro|angular", path.name.lower())
-    return usual.bare_axes(table.names) if named else {}
 
 
 def _check_there(
@@ -290,7 +275,7 @@ def _of_another_sensor(table: Table, path: Path) -> str:
         return "the units of all columns"
     named_xyz = [name for name in three if name.lower() not in usual.BODY_RATES.values()]
     alone = named_xyz and not _with_gravity(table)
-    if alone and as_long_as_gravity(list(table.first_rows(three).values())):
+    if alone and guesses.as_long_as_gravity(list(table.first_rows(three).values())):
         return "they are as long as gravity"
     return ""
 
@@ -318,10 +303,10 @@ def take_both(gyro: Path, other: Path) -> str:
 def _offered(table: Table, wanted: Mapping[str, Mapped], missing: list[str], known: bool) -> str:
     """A ready mapping of what may be rates, by names or, where nothing names columns, by values."""
     if usual.unnamed(table.names):
-        likely = likely_columns(table) if not set(wanted) - {TIME} else []
+        likely = guesses.likely_columns(table) if not set(wanted) - {TIME} else []
         return " ".join(f"--map {shlex.quote(words)}" for words in likely)
     bare = usual.bare_axes(table.names)
-    habit = by_habit("gx", bare["gx"], table.names) if bare and not known else None
+    habit = guesses.by_habit("gx", bare["gx"], table.names) if bare and not known else None
     unit = habit[0] if habit else None
     return " ".join(map_words(t, c, unit) for t, c in bare.items() if t in missing)
 
@@ -345,12 +330,16 @@ def hz_words(table: Table) -> str:
     for name, values in first.items():
         if usual.is_step(name) and np.isfinite(values).any() and np.nanmedian(values) > 0:
             step = float(np.nanmedian(values))
-            unit = unit_in_name(TIME, name) or likely_time(np.array([0.0, step]))
+            unit = unit_in_name(TIME, name) or guesses.likely_time(np.array([0.0, step]))
             return f"--hz {1 / (step * TIME_S[unit]):.4g} (as column {name!r} says in {unit})"
         steps = np.diff(values)
-        if only_grows(values) and steps.min() > 0 and likely_units_of_time(float(np.median(steps))):
-            words = map_words(TIME, name, likely_time(values))
-            if (steps % 1).any() and not of_long_time(name):
+        if (
+            guesses.only_grows(values)
+            and steps.min() > 0
+            and guesses.likely_units_of_time(float(np.median(steps)))
+        ):
+            words = map_words(TIME, name, guesses.likely_time(values))
+            if (steps % 1).any() and not guesses.of_long_time(name):
                 return words
             if not maybe and usual.is_clock(name):  # whole numbers may count anything
                 maybe = f", or {words} if it is a time"
@@ -365,7 +354,7 @@ def left_aside(plan: Plan, table: Table) -> list[str]:
         return []
     for parts in usual.attitudes(aside):
         first = table.first_rows(list(parts.values()))
-        if is_unit(np.array([first[parts[name]] for name in ATTITUDE])):
+        if guesses.is_unit(np.array([first[parts[name]] for name in ATTITUDE])):
             words = " ".join(map_words(n, parts[n]) for n in ATTITUDE)
             return [f"an attitude left aside; if it turns the body's axes into z up: {words}"]
     return [f"left aside: {_list(aside, _TOLD)}; take one along as --map NAME=COLUMN"]
@@ -389,7 +378,9 @@ def _as_another_time(column: str, table: Table) -> tuple[str, str] | None:
     for other in usual.in_units_of_time(table.names):
         first = table.first_rows([column, other]) if other != column else {}
         both = np.isfinite(list(first.values())).all(axis=0)
-        spans = [np.ptp(values[both]) for values in first.values() if only_grows(values[both])]
+        spans = [
+            np.ptp(values[both]) for values in first.values() if guesses.only_grows(values[both])
+        ]
         if len(spans) == 2 and all(spans):
             theirs = TIME_S[unit_in_name(TIME, other) or "s"]
             off = {u: abs(np.log(spans[0] * s / (spans[1] * theirs))) for u, s in TIME_S.items()}
@@ -422,7 +413,7 @@ def _unit(
         raise BadRecording(path, problem, do=do)
     if unit is None:
         another = _as_another_time(mapped.column, table) if target == TIME else None
-        unit, why = another or guessed_unit(target, plan.wanted, table.names, first, t_s)
+        unit, why = another or guesses.guessed_unit(target, plan.wanted, table.names, first, t_s)
         why = f"it goes on as {why!r}" if another else why
         note = f"{kind} taken in {unit}: {why}"
         if unit is not None and note not in plan.notes:

@@ -49,13 +49,9 @@ def _bag(path: Path) -> Table:
     connections = [one for one in bag.connections if is_wanted(one.msgtype) or within[one.topic]]
 
     def messages() -> Iterator[Logged]:
-        for connection, at_ns, raw in bag.messages(connections=connections):
-            field = within[connection.topic]
-            yield connection.topic, at_ns, partial(decoded, raw, connection.msgtype, field)
-
-    def decoded(raw: bytes, kind: str, field: str | None) -> Any:
-        message = bag.deserialize(raw, kind)
-        return getattr(message, field) if field else message
+        for one, at_ns, raw in bag.messages(connections=connections):
+            decode = partial(bag.deserialize, raw, one.msgtype)
+            yield one.topic, at_ns, partial(_inner, decode, within[one.topic])
 
     return table_of_messages(path, {t: _IMU if within[t] else kinds[t] for t in kinds}, messages)
 
@@ -65,6 +61,11 @@ def _unindexed(bag: UnindexedBag, path: Path) -> Table:
     within = {topic: field for topic, field in within.items() if field}
     kinds = {topic: _IMU if topic in within else kind for topic, kind in bag.kinds.items()}
     return table_of_messages(path, kinds, lambda: bag.messages(within))
+
+
+def _inner(decode: Callable[[], Any], field: str | None) -> Any:
+    """A message, or the one in that field of it."""
+    return getattr(decode(), field) if field else decode()
 
 
 def _field_of_imu(store: Any, kind: str) -> str | None:
@@ -111,14 +112,8 @@ class UnindexedBag:
         for number, at_ns, raw in self._messages():
             topic, kind = self._connections[number]
             if topic in within or is_wanted(kind):
-                yield topic, at_ns, self._decoder(raw, kind, within.get(topic))
-
-    def _decoder(self, raw: bytes, kind: str, field: str | None) -> Callable[[], Any]:
-        def decoded() -> Any:
-            message = self.store.deserialize_ros1(raw, kind)
-            return getattr(message, field) if field else message
-
-        return decoded
+                decode = partial(self.store.deserialize_ros1, raw, kind)
+                yield topic, at_ns, partial(_inner, decode, within.get(topic))
 
     def _messages(self) -> Iterator[tuple[int, int, bytes]]:
         """(connection, ns, bytes) of each message."""
@@ -126,8 +121,7 @@ class UnindexedBag:
             file.seek(len(_FIRST_LINE))
             for fields, data in _records(file, whole=False):
                 if fields.get(b"op") == bytes([_CHUNK]):
-                    unpacked: dict[bytes, Any] = {b"none": bytes, b"bz2": _bz2, b"lz4": _lz4}
-                    yield from self._in_chunk(unpacked[fields[b"compression"]](data))
+                    yield from self._in_chunk(_UNPACKED[fields[b"compression"]](data))
 
     def _in_chunk(self, chunk: bytes) -> Iterator[tuple[int, int, bytes]]:
         for fields, data in _records(io.BytesIO(chunk), whole=True):
@@ -181,16 +175,17 @@ def _fields(data: bytes) -> dict[bytes, bytes]:
     return out
 
 
-def _bz2(data: bytes) -> bytes:
-    return bz2.BZ2Decompressor().decompress(data)
-
-
 def _lz4(data: bytes) -> bytes:
     import lz4.frame
 
     return lz4.frame.LZ4FrameDecompressor().decompress(data)
 
 
+_UNPACKED: dict[bytes, Callable[[bytes], bytes]] = {
+    b"none": bytes,
+    b"bz2": lambda data: bz2.BZ2Decompressor().decompress(data),
+    b"lz4": _lz4,
+}
 _CODINGS = ("cdr", "ros1", "json")
 
 

@@ -9,25 +9,9 @@ import numpy as np
 
 from ...errors import BadRecording
 from ...numbers import counted, duration
-from ...recordings import Scales
+from ...recordings import Scales, turning
 from ...recordings.recording import ACCEL, COLUMNS, GYRO, TEMP, TIME, Columns
-from ...recordings.turning import (
-    Size,
-    axes_of,
-    axes_words,
-    dps_of_one,
-    turn_too_far,
-    turns_otherwise,
-)
-from ..columns.guesses import (
-    BIAS_DPS,
-    DEGC,
-    GRAVITY,
-    STEADY,
-    likely_units_of_time,
-    rate_unit_of,
-    unit_words,
-)
+from ..columns import guesses
 from ..columns.mapping import map_words
 from ..columns.plan import Plan
 from ..tables.table import Table
@@ -132,8 +116,8 @@ def _refuse_gravity(seen: dict[str, np.ndarray], plan: Plan, scales: Scales, pat
     off = usual < _LEAST_G or usual > _MOST_G and high - low < _STEADY_G * usual
     if not off and "accel" not in plan.raw:
         # what shakes it averages out
-        means = [float(np.linalg.norm(part.mean(axis=1))) for part in _eighths(pushes)]
-        usual = float(np.median(means or [1.0]))
+        eighths = np.array_split(pushes, 8, axis=1) if pushes.shape[1] >= 8 else []
+        usual = float(np.median([*map(np.linalg.norm, (p.mean(axis=1) for p in eighths))] or 1.0))
         off = usual > _MOST_G and bool(_meant(usual, plan, lsb))
     if not off:
         return
@@ -142,19 +126,16 @@ def _refuse_gravity(seen: dict[str, np.ndarray], plan: Plan, scales: Scales, pat
     raise BadRecording(path, problem, do=f"{do} --map ax=none")
 
 
-def _eighths(pushes: np.ndarray) -> list[np.ndarray]:
-    return np.array_split(pushes, 8, axis=1) if pushes.shape[1] >= 8 else []
-
-
 def _meant(usual_g: float, plan: Plan, lsb: float) -> str:
     """Ready words for a unit or scale in which it would be gravity, where one is known."""
     if "accel" in plan.raw:
         near = [r for r in _RANGES_LSB if abs(usual_g * lsb / r - 1.0) < _GRAVITY_WITHIN]
         return f"give --accel-lsb-per-g {near[0]}; else " if near else ""
-    for unit, size in GRAVITY.items():
+    for unit, size in guesses.GRAVITY.items():
         for ratio, meant in ((size, unit), (1 / size, "g")):
             if abs(usual_g / ratio - 1.0) < _GRAVITY_WITHIN:
-                return f"did you mean {meant}? Give {unit_words(plan.wanted, 'ax', meant)}; else "
+                words = guesses.unit_words(plan.wanted, "ax", meant)
+                return f"did you mean {meant}? Give {words}; else "
     return ""
 
 
@@ -162,7 +143,7 @@ def _refuse_pace(found: Gathered, plan: Plan, path: Path) -> None:
     hz = 1e6 / found.interval_us
     if hz > _FASTEST_HZ and not found.counted:
         step = found.interval_us * 1e-6 / plan.factors[TIME][0]
-        likely = next(iter(likely_units_of_time(step).items()), None)
+        likely = next(iter(guesses.likely_units_of_time(step).items()), None)
         problem = f"{hz:.3g} samples a second are more than such a sensor has"
         do = "give the true --hz"
         if likely:
@@ -179,15 +160,10 @@ def _refuse_coarse_channels(seen: dict[str, np.ndarray], plan: Plan, path: Path)
         values = seen[name][np.isfinite(seen[name])]
         spread = float(np.std(values)) if len(values) else 0.0
         if spread and np.std(values - np.rint(values)) > _MOST_ROUNDED * spread:
-            words = _with_digits(name, float(np.abs(values).max()), plan)
+            digits = 4 - math.floor(math.log10(float(np.abs(values).max())))
+            words = map_words(name, mapped.column, f"x{10.0**digits * plan.factors[name][0]:g}")
             problem = f"{name} loses its digits as a whole number"
             raise BadRecording(path, problem, do=f"keep its digits: {words}")
-
-
-def _with_digits(name: str, largest: float, plan: Plan) -> str:
-    """Words that keep four digits."""
-    scale = 10.0 ** (4 - math.floor(math.log10(largest))) * plan.factors[name][0]
-    return map_words(name, plan.wanted[name].column, f"x{scale:g}")
 
 
 def _of_rates(found: Gathered, plan: Plan, path: Path) -> list[str]:
@@ -201,7 +177,7 @@ def _of_rates(found: Gathered, plan: Plan, path: Path) -> list[str]:
     factor = plan.factors["gx"][0]
     meant = ""
     low, high = np.quantile(rates, [0.25, 0.75], axis=1)
-    if middle > BIAS_DPS and (high - low).max() < STEADY * middle:
+    if middle > guesses.BIAS_DPS and (high - low).max() < guesses.STEADY * middle:
         said = f"a steady rate of {middle:.3g} dps is no bias of a sound sensor at rest"
         meant = "dps" if factor > 1 else ""
     elif (
@@ -223,18 +199,20 @@ def _of_rates(found: Gathered, plan: Plan, path: Path) -> list[str]:
 
 def _of_unit(said: str, meant: str, plan: Plan, path: Path) -> list[str]:
     """The doubt of a unit of rates that the user named; raise BadRecording for any other unit."""
-    words = unit_words(plan.wanted, "gx", meant)
+    words = guesses.unit_words(plan.wanted, "gx", meant)
     if "gyro" in plan.typed:
         return [f"{said}: did you mean {meant}? ({words})"]
     do = f"did you mean {meant}? Give {words}; or name the unit as it is, which is believed"
     raise BadRecording(path, said, do=do)
 
 
-def _gravity_turns_times(seen: dict[str, np.ndarray], plan: Plan, scales: Scales) -> Size | None:
+def _gravity_turns_times(
+    seen: dict[str, np.ndarray], plan: Plan, scales: Scales
+) -> turning.Size | None:
     """How much faster gravity turns than the rates say; None where it does not tell."""
     if plan.by_format or len(seen.get("ax", ())) != len(seen[TIME]):
         return None
-    return dps_of_one(*_turns(seen, plan, scales))
+    return turning.dps_of_one(*_turns(seen, plan, scales))
 
 
 def _turns(seen: Columns, plan: Plan, scales: Scales) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -249,24 +227,25 @@ def _of_axes(seen: dict[str, np.ndarray], plan: Plan, scales: Scales) -> list[st
     if len(seen.get("ax", ())) != len(seen[TIME]):
         return []
     turns = _turns(seen, plan, scales)
-    axes = axes_of(*turns)
-    if axes is None and turns_otherwise(*turns):
+    axes = turning.axes_of(*turns)
+    if axes is None and turning.turns_otherwise(*turns):
         columns = ", ".join(plan.wanted[axis].column for axis in GYRO)
         return [f"gravity turns, but not as {columns} say: are these the rates, at this time?"]
     if axes is None or (axes == np.eye(3)).all():
         return []
+    order = turning.axes_words(axes)
     words = [
         map_words(target, ("-" if name.startswith("-") else "") + one.column, one.unit)
-        for target, name in zip(GYRO, axes_words(axes).split())
+        for target, name in zip(GYRO, order.split())
         for one in [plan.wanted[f"g{name[-1]}"]]
     ]
-    said = (
-        f"gravity turns as if the rates x y z were {axes_words(axes)} of the accelerometer's axes"
-    )
+    said = f"gravity turns as if the rates x y z were {order} of the accelerometer's axes"
     return [f"{said}: give {' '.join(words)}, or motion teaches nothing true"]
 
 
-def _of_turning(times: Size, counted: bool, plan: Plan, scales: Scales, path: Path) -> list[str]:
+def _of_turning(
+    times: turning.Size, counted: bool, plan: Plan, scales: Scales, path: Path
+) -> list[str]:
     if times.least < 1.0 < times.most:
         return []
     said = f"gravity turns {times.dps:.2g} times as fast as the rates"
@@ -274,7 +253,7 @@ def _of_turning(times: Size, counted: bool, plan: Plan, scales: Scales, path: Pa
     if "gyro" in plan.raw:
         lsb = scales.gyro_lsb_per_dps / times.dps
         return [f"{said}: did you mean --gyro-lsb-per-dps {lsb:.3g}? Or is {time} wrong"]
-    meant = rate_unit_of(times, plan.factors["gx"][0])
+    meant = guesses.rate_unit_of(times, plan.factors["gx"][0])
     if meant is None:
         return [f"{said}: is their unit, or {time}, wrong?"]
     return _of_unit(said, meant, plan, path)
@@ -284,7 +263,7 @@ def _of_standing(seen: Columns, plan: Plan, scales: Scales, path: Path) -> list[
     """Rates that would turn gravity, which stays where it is."""
     if plan.by_format or len(seen.get("ax", ())) != len(seen[TIME]):
         return []
-    if not turn_too_far(*_turns(seen, plan, scales)):
+    if not turning.turn_too_far(*_turns(seen, plan, scales)):
         return []
     said = "gravity stays where these rates would turn it"
     if "gyro" in plan.raw:
@@ -308,7 +287,7 @@ def _of_temperature(seen: dict[str, np.ndarray], plan: Plan) -> list[str]:
     leave = "or leave it out: --map temp=none"
     if len(temp) and not temp.any():
         return [f"the temperature is 0 throughout, as if nobody measured it: map another, {leave}"]
-    if not len(temp) or DEGC[0] <= np.median(temp) <= DEGC[1]:
+    if not len(temp) or guesses.DEGC[0] <= np.median(temp) <= guesses.DEGC[1]:
         return []
-    unit = unit_words(plan.wanted, TEMP, "k")
+    unit = guesses.unit_words(plan.wanted, TEMP, "k")
     return [f"the usual temperature is {np.median(temp):.4g} degC: name its unit ({unit}), {leave}"]

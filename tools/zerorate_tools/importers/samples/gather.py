@@ -14,17 +14,7 @@ from ..columns.guesses import unit_words
 from ..columns.plan import Plan, hz_words
 from ..columns.units import TIME_S
 from ..tables.table import Table
-from .clock import (
-    Pace,
-    Ticks,
-    Unwrapped,
-    arrive_in_bursts,
-    evened,
-    evenly,
-    refuse_impossible,
-    whole_stamps,
-)
-from .counts import Counts
+from . import clock
 from .lines import without_lines
 from .one_device import refuse_change_of_unit, refuse_turns
 from .spool import PLACE, TIME, Runs, Spool, in_order
@@ -79,6 +69,48 @@ def _are_held(rates: np.ndarray, t_us: np.ndarray) -> bool:
     return bool(some.any() and some.mean() < _OFTEN_NEW and every.sum() > 0.5 * some.sum())
 
 
+#: Counts that are words of 16 bits, however a program printed their sign.
+_BEYOND, _SPAN = 1 << 15, 1 << 16
+#: Words with a sign turn from 32,767 to 32,768 at the end of the range, where readings are rare.
+_MIDDLE, _MOST_IN_MIDDLE = (24_576, 40_960), 0.01
+_KINDS = {"gyro": GYRO, "accel": ACCEL, "temp": (TEMP,)}
+
+
+class Counts:
+    """Gives counts that were printed without a sign theirs, and says what cannot be counts."""
+
+    def __init__(self, raw: frozenset[str]) -> None:
+        # the least, the most, how many are about the middle, and in all
+        self._seen = dict.fromkeys(sorted(raw), (np.inf, 0.0, 0, 0))
+
+    def signed(self, columns: dict[str, np.ndarray]) -> None:
+        """Turn 32,768 to 65,535 into negative counts, in place."""
+        for kind, (least, most, middle, size) in self._seen.items():
+            there = {name: columns[name] for name in _KINDS[kind] if name in columns}
+            every = np.concatenate([np.empty(0), *there.values()])
+            every = every[np.isfinite(every)]
+            least, most = float(every.min(initial=least)), float(every.max(initial=most))
+            middle += int(((every >= _MIDDLE[0]) & (every < _MIDDLE[1])).sum())
+            self._seen[kind] = least, most, middle, size + len(every)
+            for name, values in there.items():
+                turned = (values >= _BEYOND) & (values < _SPAN)
+                columns[name] = np.where(turned, values - _SPAN, values)
+
+    def notes(self, path: Path) -> list[str]:
+        """What was taken for what. Raises BadRecording where the counts are of another kind."""
+        for kind, (least, most, middle, size) in self._seen.items():
+            span = f"{kind}: counts from {least:.0f} to {most:.0f}"
+            unsigned = 0 <= least and _BEYOND <= most < _SPAN
+            if unsigned and middle > _MOST_IN_MIDDLE * size:
+                problem = f"{span} are around 32768, where a word of 16 bits changes its sign"
+                raise BadRecording(path, problem, do="subtract 32768 from each and import that")
+            if not unsigned and not (-_BEYOND <= least and most < _BEYOND):
+                do = "divide them by their scale, and import deg/s, g or degC"
+                raise BadRecording(path, f"{span} are no words of 16 bits", do=do)
+        turned = [kind for kind, (_, most, *_) in self._seen.items() if most >= _BEYOND]
+        return [f"{kind}: counts of 32768 and more are negative ones" for kind in turned]
+
+
 class _Gathering:
     def __init__(
         self,
@@ -102,7 +134,7 @@ class _Gathering:
         self.compared = [TIME, *self.readings]
         self.before = np.full(len(self.compared), np.nan)
         self.runs = Runs()
-        self.clock = Unwrapped(self._step_us())
+        self.clock = clock.Unwrapped(self._step_us())
         self.counts = Counts(plan.raw)
         self.kept: list[dict[str, np.ndarray]] = []
         self.beside: dict[str, list[np.ndarray]] = {}
@@ -165,9 +197,10 @@ class _Gathering:
         columns[PLACE] = place.astype(float)
         columns = self._less(columns, np.isfinite(columns[TIME]), _NO_TIME)
         # what has no reading may have no true time either
-        columns = self._less(columns, self._has_any(columns), "no reading of these columns")
-        refuse_impossible(columns[TIME], columns[PLACE], self.path)
-        columns = self._less(columns, whole_stamps(columns[TIME]), "the time stamp is torn")
+        some = np.any(np.isfinite([columns[name] for name in self.readings]), axis=0)
+        columns = self._less(columns, some, "no reading of these columns")
+        clock.refuse_impossible(columns[TIME], columns[PLACE], self.path)
+        columns = self._less(columns, clock.whole_stamps(columns[TIME]), "the time stamp is torn")
         columns[TIME] = self.clock(columns[TIME], columns[PLACE])
         columns = self._less(columns, *self._not_written_twice(columns))
         self.counts.signed(columns)
@@ -196,10 +229,6 @@ class _Gathering:
             return columns
         self.dropped[reason] += int((~good).sum())
         return {name: values[good] for name, values in columns.items()}
-
-    def _has_any(self, columns: Columns) -> np.ndarray:
-        """Not the rows of another sensor alone, whose columns are left out."""
-        return np.any(np.isfinite([columns[name] for name in self.readings]), axis=0)
 
     def _is_something(self, columns: Columns) -> tuple[np.ndarray, str]:
         """Rows with three rates, or with none but a reading of another sensor."""
@@ -293,21 +322,21 @@ class _Gathering:
         if self.hz:
             return 1e6 / self.hz, []
         pace, notes = self._pace(), []
-        ticks = Ticks(pace.first)
+        ticks = clock.Ticks(pace.first)
         if ticks.coarse:
-            self.spool, note = evenly(self.spool, ticks, self.path)
+            self.spool, note = clock.evenly(self.spool, ticks, self.path)
             pace, notes = self._pace(), [note]
         interval_us = pace.interval_us(self.path)
         every_row = self.samples == sum(piece.rows for piece in self.spool.pieces)
-        if every_row and arrive_in_bursts(self.spool.read(0), pace.mean_us):
+        if every_row and clock.arrive_in_bursts(self.spool.read(0), pace.mean_us):
             interval_us = pace.mean_us
-            self.spool = self.spool.remade(evened(self.spool, interval_us))
+            self.spool = self.spool.remade(clock.evened(self.spool, interval_us))
             self.kept = [self._some(n, columns) for n, columns in enumerate(self.spool)]
-            notes.append("time stamps come in bursts: samples are spread evenly between them")
+            notes.append("time stamps come in bursts: samples are spread clock.evenly between them")
         return interval_us, notes
 
-    def _pace(self) -> Pace:
-        pace = Pace()
+    def _pace(self) -> clock.Pace:
+        pace = clock.Pace()
         for columns in self.spool:
             pace.add(columns[TIME][np.isfinite(columns["gx"])])
         return pace

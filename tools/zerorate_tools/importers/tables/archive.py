@@ -165,7 +165,7 @@ def _is_of_sensors(table: Table, file: Path) -> bool:
 def _together(tables: dict[str, Table], shared: list[str]) -> Table:
     """shared: columns of times; where there are none, rows of one number are of one time."""
     own = {
-        (stem, name): name if _holds(name, stem) else f"{stem} {name}"
+        (stem, name): name if usual.spelled(stem) in usual.spelled(name) else f"{stem} {name}"
         for stem, table in tables.items()
         for name in table.names
         if name not in shared
@@ -196,7 +196,3 @@ def _together(tables: dict[str, Table], shared: list[str]) -> Table:
         [*shared, *own.values()], chunks, calendar=calendar, notes=[note], parts=len(tables)
     )
     return both
-
-
-def _holds(name: str, stem: str) -> bool:
-    return usual.spelled(stem) in usual.spelled(name)

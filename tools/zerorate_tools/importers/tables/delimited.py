@@ -155,12 +155,9 @@ def _changed(lines: bytes, form: Form) -> bytes:
         lines = lines.decode(errors="replace").encode()
     if form.delimiter == "," and b";" in lines:
         lines = re.sub(rb"(?m);[ \t]*(?=\r?$)", b"", lines)
-    return _single_blanks(lines) if form.delimiter == " " else lines
-
-
-def _single_blanks(text: bytes) -> bytes:
-    text = re.sub(rb"[ \t]+", b" ", text)
-    return re.sub(rb"(?m)^ | (?=\r?$)", b"", text)
+    if form.delimiter == " ":
+        lines = re.sub(rb"(?m)^ | (?=\r?$)", b"", re.sub(rb"[ \t]+", b" ", lines))
+    return lines
 
 
 class _OddLines:

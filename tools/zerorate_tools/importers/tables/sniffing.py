@@ -382,7 +382,8 @@ def _names(
         comments = [line.strip() for line in (above, *lines[at + 1 : at + 2])]
         said = [_in_comment(line, delimiter) for line in comments if line.startswith(COMMENTS)]
         for of, units in ((named, names), *((names, units) for units in said)):
-            if len(of) == len(units) and all(map(_is_unit, units, of)) and any(units):
+            are_units = (_UNIT.match(unit) or not (unit or name) for unit, name in zip(units, of))
+            if len(of) == len(units) and all(are_units) and any(units):
                 units = [unit.strip("[()]").replace("(s^2", "s^2") for unit in units]
                 names = [f"{name} [{unit}]" if name else "" for name, unit in zip(of, units)]
                 break
@@ -428,10 +429,6 @@ def _joined(above: str, name: str) -> str:
     """`gyro (rad/s)` over `x` is `gyro x (rad/s)`."""
     stem = without_unit(above.lower())
     return " ".join(filter(None, (above[: len(stem)], name))) + above[len(stem) :]
-
-
-def _is_unit(text: str, name: str) -> bool:
-    return bool(_UNIT.match(text)) or not (text or name)
 
 
 def _as_wide(names: list[str], first: list[str]) -> list[str]:
