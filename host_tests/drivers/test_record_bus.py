@@ -20,7 +20,7 @@ from zerorate_i2c.fifo import Fifo
 from zerorate_i2c.linux import LinuxI2C
 from zerorate_i2c.mpu6050 import MPU6050
 from zerorate_tools import cli
-from zerorate_tools.boards import bus, fake_hand
+from zerorate_tools.boards import bus, fake_chip
 from zerorate_tools.boards.bus import stream_bus
 from zerorate_tools.boards.fake_chip import FakeBus
 from zerorate_tools.boards.recorder import Recorder, recorded
@@ -219,7 +219,7 @@ def test_a_full_disk_is_no_bus_error_and_all_before_it_is_kept(machine, monkeypa
 
 def test_the_command_ends_with_1_where_every_sample_is_in_doubt(machine, monkeypatch, capsys):
     machine.at(0.28, machine.chip.power_up)
-    monkeypatch.setattr(fake_hand, "in_hand", lambda: (machine.bus, machine.clock, 60.0))
+    monkeypatch.setattr(fake_chip, "in_hand", lambda: (machine.bus, machine.clock, 60.0))
     words = ["record", "fake:", "--out", str(machine.out), "--seconds", "0.3"]
     assert cli.main(words) == 1
     assert " 5 dropped" in capsys.readouterr().out
@@ -227,8 +227,8 @@ def test_the_command_ends_with_1_where_every_sample_is_in_doubt(machine, monkeyp
 
 
 def test_an_emulated_chip_is_recorded_as_the_hand_moves_and_no_longer(tmp_path, monkeypatch):
-    bus, clock, seconds = fake_hand.in_hand()
-    monkeypatch.setattr(fake_hand, "in_hand", lambda: (bus, clock, 2.0))
+    bus, clock, seconds = fake_chip.in_hand()
+    monkeypatch.setattr(fake_chip, "in_hand", lambda: (bus, clock, 2.0))
     out, hand = tmp_path / "run.csv", simulate("in-hand")[0]
     assert seconds == pytest.approx((len(hand) - 1) / hand.scales.odr_hz)
     moved = hand.columns["gx"][:900]
@@ -277,7 +277,7 @@ def test_an_emulated_chip_that_rests_has_a_bias():
 
 
 def test_a_simulated_hand_feels_nothing_new_after_its_recording():
-    felt = fake_hand._over_time(Recording({n: np.arange(9) for n in GYRO}, SCALES, "run"), GYRO, 2)
+    felt = fake_chip._over_time(Recording({n: np.arange(9) for n in GYRO}, SCALES, "run"), GYRO, 2)
     assert [felt(s)[0] for s in (0.0, 0.26, 0.8, 99.0)] == pytest.approx([0, 1.3, 4, 4])
 
 

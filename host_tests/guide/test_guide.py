@@ -5,7 +5,7 @@ from functools import partial
 
 import numpy as np
 import pytest
-from zerorate_tools.boards import fake_hand, recorder
+from zerorate_tools.boards import fake_chip, recorder
 from zerorate_tools.boards.bus import stream_bus
 from zerorate_tools.cli import main
 from zerorate_tools.closing import close
@@ -81,7 +81,7 @@ class Silent:
 def test_a_guide_beside_the_recording_sees_what_one_that_waits_sees(tmp_path):
     seen = {}
     for waits in (True, False):
-        bus, clock, _ = fake_hand.in_hand()
+        bus, clock, _ = fake_chip.in_hand()
         with Guide(Silent(), waits=waits) as guide:
             streamed = partial(stream_bus, bus, seconds=30, time_source=clock, done=guide.done)
             recorder.recorded("I2C", tmp_path / f"{waits}.parquet", guide.heard, streamed)

@@ -28,7 +28,7 @@ from collections import Counter
 from pathlib import Path
 from types import SimpleNamespace
 
-from zerorate_bench.foreign_logs import arrays, flights, robots, sensors
+from zerorate_bench.foreign_logs import arrays, robots, sensors
 from zerorate_bench.foreign_logs.world import World
 from zerorate_tools.bounds import ALONE, MEMORY_MB
 from zerorate_tools.errors import ZerorateError
@@ -60,7 +60,7 @@ def gz(folder, world):
     import gzip
 
     path = folder / "in.csv.gz"
-    path.write_bytes(gzip.compress(flights.mavlogdump(folder, world).read_bytes(), mtime=0))
+    path.write_bytes(gzip.compress(robots.mavlogdump(folder, world).read_bytes(), mtime=0))
     return path
 
 
@@ -71,14 +71,14 @@ FORMATS = {
     "matlab": (arrays.matlab, arrays.matlab73),
     "hdf5": (arrays.hdf5, arrays.hdf5_table),
     "numpy": (arrays.npz, arrays.npy),
-    "ulog": (flights.ulog,),
-    "dataflash": (flights.dataflash, flights.dataflash_of_2015),
-    "blackbox": (flights.blackbox,),
+    "ulog": (robots.ulog,),
+    "dataflash": (robots.dataflash, robots.dataflash_of_2015),
+    "blackbox": (robots.blackbox,),
     "ros1": (robots.ros1,),
     "db3": (robots.db3,),
     "mcap": (robots.mcap, robots.mcap_json),
     "json": (arrays.json_columns, arrays.json_records, arrays.json_lists, robots.json_lines),
-    "csv": (robots.euroc, robots.uzh_fpv, flights.mavlogdump, flights.blackbox_explorer),
+    "csv": (robots.euroc, robots.uzh_fpv, robots.mavlogdump, robots.blackbox_explorer),
     "words": (sensors.in_words, sensors.echoed, sensors.parted),
     "csv.gz": (gz,),
     "zip": (zipped,),

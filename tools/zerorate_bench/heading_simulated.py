@@ -15,14 +15,7 @@ from zerorate_tools.loop.motion.by_windows import by_windows
 from zerorate_tools.loop.motion.moving import moving_of
 from zerorate_tools.recordings import Recording, Scales
 from zerorate_tools.recordings.writing import write_recording
-from zerorate_tools.simulate.attitude import (
-    IDENTITY,
-    facing,
-    integrate,
-    into_body,
-    multiply,
-    rotation,
-)
+from zerorate_tools.simulate import attitude as quaternions
 from zerorate_tools.simulate.device import counts
 from zerorate_tools.simulate.motion import FACES, Bout, Start, rest, stride, vibration
 
@@ -45,14 +38,14 @@ def walking(start: Start) -> Bout:
     """In a pocket: strides, corners every few seconds, 1 to 1.6 m/s along the path. The leg swings
     about one pose and pushes along the path, so that a walker's speed stays that of a walker."""
     leg = stride(start, dps=start.rng.uniform(60, 140), hz=start.rng.uniform(0.8, 1.1))
-    swung = rotation(np.cumsum(leg.rate_dps, axis=0) * start.dt_s)
-    before = np.vstack([IDENTITY, swung[:-1]]) * [1.0, -1.0, -1.0, -1.0]
-    vector = multiply(before, swung)[:, 1:]
+    swung = quaternions.rotation(np.cumsum(leg.rate_dps, axis=0) * start.dt_s)
+    before = np.vstack([quaternions.IDENTITY, swung[:-1]]) * [1.0, -1.0, -1.0, -1.0]
+    vector = quaternions.multiply(before, swung)[:, 1:]
     swing = np.degrees(2.0 * vector) / start.dt_s
     yaw = _smooth(start, 1.5, 4.0)[:, 0] * 20.0
     speed = start.rng.uniform(1.0, 1.6) * _edges(start)
     rate = swing + _upright(start, swing, yaw)
-    pushed = into_body(
+    pushed = quaternions.into_body(
         swung, np.asarray(leg.push_g)
     )  # from the path's frame, which turns by the yaw alone
     return Bout(rate, pushed + _along(start, rate, yaw, speed))
@@ -119,14 +112,16 @@ def _accelerated(where_m: Array, dt_s: float) -> Array:
 
 def _upright(start: Start, rate_dps: Array, yaw_dps: Array) -> Array:
     """(n, 3) turns about the vertical of a body that turns otherwise, too."""
-    attitude = integrate(rate_dps, start.dt_s, facing(start.up))
-    return yaw_dps[:, None] * into_body(attitude, np.array([0.0, 0.0, 1.0]))
+    attitude = quaternions.integrate(rate_dps, start.dt_s, quaternions.facing(start.up))
+    return yaw_dps[:, None] * quaternions.into_body(attitude, np.array([0.0, 0.0, 1.0]))
 
 
 def _push(start: Start, rate_dps: Array, where_m: Array) -> Array:
     """(n, 3) g in the body of a place (n, 3) in the world."""
-    attitude = integrate(rate_dps, start.dt_s, facing(start.up))
-    return into_body(attitude, _accelerated(where_m * _edges(start)[:, None], start.dt_s))
+    attitude = quaternions.integrate(rate_dps, start.dt_s, quaternions.facing(start.up))
+    return quaternions.into_body(
+        attitude, _accelerated(where_m * _edges(start)[:, None], start.dt_s)
+    )
 
 
 def _along(start: Start, rate_dps: Array, yaw_dps: Array, speed_mps: Array) -> Array:
@@ -134,8 +129,8 @@ def _along(start: Start, rate_dps: Array, yaw_dps: Array, speed_mps: Array) -> A
     heading = np.radians(np.cumsum(yaw_dps) * start.dt_s)
     ahead = np.stack([np.cos(heading), np.sin(heading), 0.0 * heading], axis=1)
     speeding = np.gradient(ahead * speed_mps[:, None], start.dt_s, axis=0)
-    attitude = integrate(rate_dps, start.dt_s, facing(start.up))
-    return into_body(attitude, speeding / _G_MPS2)
+    attitude = quaternions.integrate(rate_dps, start.dt_s, quaternions.facing(start.up))
+    return quaternions.into_body(attitude, speeding / _G_MPS2)
 
 
 COHERENT = "coherent"
@@ -239,8 +234,8 @@ def _errors(rng: np.random.Generator) -> Array:
 
 def felt(start: Start, bout: Bout) -> tuple[Array, ...]:
     """Of each sample, in the body: rates, specific force in g, the vertical; and the attitude."""
-    attitude = integrate(bout.rate_dps, start.dt_s, facing(start.up))
-    level = into_body(attitude, _UP)
+    attitude = quaternions.integrate(bout.rate_dps, start.dt_s, quaternions.facing(start.up))
+    level = quaternions.into_body(attitude, _UP)
     return bout.rate_dps, level if bout.push_g is None else level + bout.push_g, level, attitude
 
 
@@ -251,14 +246,16 @@ def _stretches(
     turn."""
     dt_s, at_s = 1 / hz, 0.0
     up = FACES[str(rng.choice(list(FACES)))] if case.kind in ("hand", "walking") else _UP
-    attitude = facing(up)
+    attitude = quaternions.facing(up)
     while at_s < seconds:
         moving = rng.uniform(20.0, 120.0)
         for act, long_s in ((_WORLDS[case.kind], moving), (rest, moving * resting / (1 - resting))):
             n = round(long_s * hz)
             if n < hz:
                 continue
-            start = Start(rng, np.arange(1, n + 1) * dt_s, dt_s, into_body(attitude, _UP))
+            start = Start(
+                rng, np.arange(1, n + 1) * dt_s, dt_s, quaternions.into_body(attitude, _UP)
+            )
             *shown, turned = felt(start, act(start))
             yield tuple(shown)
             attitude = turned[-1]

@@ -1,4 +1,6 @@
-"""Numbers as a reader wants them."""
+"""Numbers, and lists of names, as a reader wants them."""
+
+from collections.abc import Sequence
 
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _LEAST, _MOST = -4, 6
@@ -35,6 +37,12 @@ def fixed(value: float, digits: int, sign: str = "") -> str:
 def counted(count: int, what: str) -> str:
     """1 device, 2 devices."""
     return f"{count} {what}{'' if count == 1 else 's'}"
+
+
+def listed(names: Sequence[str], most: int) -> str:
+    """The first of them: gx, gy and 3 more."""
+    more = f" and {len(names) - most} more" if len(names) > most else ""
+    return ", ".join(names[:most]) + more
 
 
 def duration(seconds: float) -> str:

@@ -2,7 +2,7 @@
 
 # the order in which a page lists them
 # isort: off
-from . import phones, clocks, arrays, changed, flights, robots, sensors, tools  # noqa: F401
+from . import phones, clocks, arrays, changed, robots, sensors, tools  # noqa: F401
 from .world import CORPUS, Log, World
 
 __all__ = ["CORPUS", "Log", "World"]

@@ -40,10 +40,6 @@ def _archive(path: Path, members: dict[str, str | bytes]) -> None:
             archive.writestr(name, content)
 
 
-def _of_lists(world: World) -> str:
-    return json.dumps({"device": "A", **{n: of.tolist() for n, of in plain(world).items()}})
-
-
 matlab = log.file("MATLAB, version 5", "in.mat",
     lambda path, w: savemat(path, {**_arrays(w), "seen": np.zeros((12, 2 * len(w.t_s)))}))
 
@@ -82,7 +78,9 @@ json_columns = log.text("JSON of pandas, a dictionary of columns",
     lambda w: plain(w).to_json(), "in.json")
 json_records = log.text("JSON, a list of records",
     lambda w: plain(w).to_json(orient="records", indent=1), "in.json")
-json_lists = log.text("JSON, an object of lists", _of_lists, "in.json")
+json_lists = log.text("JSON, an object of lists",
+    lambda w: json.dumps({"device": "A", **{n: of.tolist() for n, of in plain(w).items()}}),
+    "in.json")
 log.file("a database of SQLite", "in.sqlite", _database)
 log.file("a spreadsheet",
     "in.xlsx", lambda path, w: _archive(path,

@@ -74,12 +74,9 @@ def _long(world: World, gyro: str, accel: str, names: str = "time,sensor,{xyz}")
     return pd.concat([rates, force]).sort_values(names.split(",")[0], kind="stable")
 
 
-def _sensor_logger_rows(world: World) -> str:
-    names = "GyroscopeUncalibrated", "TotalAcceleration", "seconds_elapsed,sensor,{xyz}"
-    return json.dumps(_long(world, *names).astype(str).to_dict("records"))
-
-
-log.text("Sensor Logger, its JSON of all sensors", _sensor_logger_rows, "in.json")
+log.text("Sensor Logger, its JSON of all sensors",
+    lambda w: json.dumps(_long(w, "GyroscopeUncalibrated", "TotalAcceleration",
+        "seconds_elapsed,sensor,{xyz}").astype(str).to_dict("records")), "in.json")
 log.csv("rows of several sensors: time,sensor,x,y,z", lambda w: _long(w, "gyro", "accel"))
 log.csv("rows of several sensors, told by Android's numbers",
     lambda w: _long(w, "4", "1", "time,sensor_type,{xyz}"))

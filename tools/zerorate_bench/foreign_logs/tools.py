@@ -54,13 +54,10 @@ log.csv("SensorLog of iOS: bars between the columns",
         w.dates(_DATE, 3) + " +0200", w.each(0), w.g, w.t_s + 4e5, w.rad, w.each(0)), sep="|")
 
 
-def _sensor_log_rows(world: World) -> str:
-    names = "gyroTimestamp_sinceReboot,accelerometerAcceleration{XYZ},gyroRotation{XYZ}"
-    frame = table(names, world.t_s + 4e5, world.g, world.rad)
-    return json.dumps(frame.astype(str).to_dict("records"))
-
-
-log.text("SensorLog of iOS, its JSON", _sensor_log_rows, "in.json")
+log.text("SensorLog of iOS, its JSON",
+    lambda w: json.dumps(table(
+        "gyroTimestamp_sinceReboot,accelerometerAcceleration{XYZ},gyroRotation{XYZ}",
+        w.t_s + 4e5, w.g, w.rad).astype(str).to_dict("records")), "in.json")
 
 
 def _mt_manager(world: World) -> pd.DataFrame:
@@ -371,13 +368,10 @@ log.csv("Gyroflow, .gcsv: time in counts of a tenth of a millisecond",
     lambda w: _gcsv(w, 1e4), _GYROFLOW.format(0.0001), name="in.gcsv")
 
 
-def _lists(world: World) -> list[np.ndarray]:
-    """Of each axis: a list of 25 readings in each cell."""
-    return [np.array([str(part.tolist()) for part in axis.reshape(-1, 25)]) for axis in world.dps.T]
-
-
 log.csv("a watch's table: a list of 25 readings in each cell",
-    lambda w: table("timestamp_s,gyro_{xyz}", w.t_s[::25], *_lists(w)), words="--gyro-unit dps")
+    lambda w: table("timestamp_s,gyro_{xyz}", w.t_s[::25],
+        *([str(part.tolist()) for part in axis.reshape(-1, 25)] for axis in w.dps.T)),
+    words="--gyro-unit dps")
 log.csv("a watch's table: three rates in a cell, [x, y, z]",
     lambda w: table("timestamp_s,heart_rate,gyro", w.t_s, 70 + w.count % 9,
         [str(row.tolist()) for row in w.dps]), words="--gyro-unit dps")
@@ -406,13 +400,11 @@ def _of_25_samples(world: World) -> str:
     return "".join(json.dumps(part) + "\n" for part in parts)
 
 
-def _mvnx(world: World) -> str:
-    frames = (f'<frame time="{n}"><x>{row}</x></frame>' for n, row in enumerate(world.dps.tolist()))
-    return f'<?xml version="1.0"?>\n<mvnx version="4">{"".join(frames)}</mvnx>\n'
-
-
 log.text("a watch's JSON lines: a list of 25 samples in each", _of_25_samples, "in.jsonl")
-log.text("Xsens MTw, .mvnx", _mvnx, "in.mvnx")
+log.text("Xsens MTw, .mvnx",
+    lambda w: '<?xml version="1.0"?>\n<mvnx version="4">' + "".join(
+        f'<frame time="{n}"><x>{row}</x></frame>' for n, row in enumerate(w.dps.tolist()))
+        + "</mvnx>\n", "in.mvnx")
 log.csv("a time by another name: Zeit;wx;wy;wz",
     lambda w: table("Zeit,w{xyz}", w.t_s, w.rad).round(5), words="--gyro-unit rad/s", sep=";",
     decimal=",")

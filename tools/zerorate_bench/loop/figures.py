@@ -11,24 +11,8 @@ from typing import Any, TypeVar
 import numpy as np
 from scipy.stats import binomtest
 
+from . import devices as kinds
 from .added_effects import CURVE_OF
-from .devices import (
-    CATALOGUE,
-    CORNERS,
-    CURVE,
-    HIDDEN,
-    KINK,
-    MANY_WIDTHS,
-    NULL,
-    OUT,
-    OUTSIDE,
-    REAL,
-    SIZES,
-    START_KNOWN,
-    STEP,
-    TOLD,
-    TWO,
-)
 from .files import ROWS
 from .run_trial import Outcome
 
@@ -36,7 +20,7 @@ Looked = TypeVar("Looked")
 Rows = dict[str, list[Outcome]]
 #: How the names of figures begin that are of all devices together.
 _OF_ALL = ("2x, named", "2x-5x all", "groups told", "held-out error")
-_NAMED = (*CATALOGUE, KINK)
+_NAMED = (*kinds.CATALOGUE, kinds.KINK)
 _FOUND, _LISTED, _CONFIRMED = map(attrgetter, ("found", "events", "confirmed"))
 #: Ends of the probabilities that are counted together.
 _TOLD = (0.05, 0.35, 0.65, 1.0)
@@ -95,36 +79,40 @@ def figures(outcomes: list[Outcome], whole: bool = True) -> list[Figure]:
 def _figures(rows: Rows) -> Iterator[Figure]:
     yield from _where_nothing_is(rows)
     yield from _catalogue(rows)
-    for effect, some in _by_effect(rows[OUT]).items():
-        channels = OUTSIDE[effect]
+    for effect, some in _by_effect(rows[kinds.OUT]).items():
+        channels = kinds.OUTSIDE[effect]
         name = f"outside, 2x {effect}: tied to {' and '.join(channels)}"
         yield share(name, some, partial(Outcome.tied_to, channels=channels), 90.0)
-    yield from _curves(rows[CURVE])
-    yield share(f"step invented at {CORNERS}", rows[CORNERS], _LISTED, 1.0, True)
+    yield from _curves(rows[kinds.CURVE])
+    yield share(f"step invented at {kinds.CORNERS}", rows[kinds.CORNERS], _LISTED, 1.0, True)
     for n, limit in ((4, 10.0), (7, 2.0)):
-        group = rows[row := f"{HIDDEN}, {n} sessions"]
+        group = rows[row := f"{kinds.HIDDEN}, {n} sessions"]
         yield share(f"{row}: confirmed", group, _CONFIRMED, limit, at_most=True)
         yield share(f"{row}: tentative", group, lambda o: bool(o.found) > o.confirmed, None)
         yield share(f"{row}: said to be left", group, lambda o: o.excess, None)
     yield from _removed(rows)
     yield from _told(rows)
-    for effects, some in _by_effect(rows[TWO]).items():
+    for effects, some in _by_effect(rows[kinds.TWO]).items():
         yield share(f"2x {effects}: both named", some, _named, 90.0)
     yield from _many_widths(rows)
     yield from _from_files(rows)
-    blocks = [o for row, of in rows.items() if row not in (*ROWS, TOLD, CORNERS) for o in of]
+    blocks = [
+        o for row, of in rows.items() if row not in (*ROWS, kinds.TOLD, kinds.CORNERS) for o in of
+    ]
     name = "held-out error made worse by more than 2 %"
     for hidden, which in ((False, name), (True, f"{name}, cause not recorded")):
-        some = [o for o in blocks if o.device.row.startswith(HIDDEN) == hidden]
+        some = [o for o in blocks if o.device.row.startswith(kinds.HIDDEN) == hidden]
         yield share(which, some, lambda o: o.worse, 2.0, at_most=True)
 
 
 def _where_nothing_is(rows: Rows) -> Iterator[Figure]:
-    quiet = {row: of for row, of in rows.items() if row.startswith(NULL) or row == REAL}
-    noise = [o for row, group in quiet.items() if row != REAL for o in group]
+    quiet = {row: of for row, of in rows.items() if row.startswith(kinds.NULL) or row == kinds.REAL}
+    noise = [o for row, group in quiet.items() if row != kinds.REAL for o in group]
     yield share("found in nothing, all kinds", noise, _FOUND, 0.5, True)
     for row, group in quiet.items():
-        yield share(f"found in {row}", group, _FOUND, 2.0 if row == REAL else 0.5, at_most=True)
+        yield share(
+            f"found in {row}", group, _FOUND, 2.0 if row == kinds.REAL else 0.5, at_most=True
+        )
     for row, group in quiet.items():
         yield share(f"step listed in {row}", group, _LISTED, None)
     yield share("found, or found and withdrawn, in nothing", noise, _found_at_first, None)
@@ -144,12 +132,12 @@ def _by_effect(group: list[Outcome]) -> Rows:
 def _catalogue(rows: Rows) -> Iterator[Figure]:
     twice, found = _by_effect(rows["2x"]), []
     for effect in _NAMED:
-        limit = 80.0 if effect == KINK else 98.0
+        limit = 80.0 if effect == kinds.KINK else 98.0
         yield share(f"2x {effect}: found", twice[effect], _FOUND, limit)
         found += [o for o in twice[effect] if o.found]
     yield share("2x, named rightly of those found", found, _named, 95.0)
-    yield share("2x step: listed", twice[STEP], _LISTED, None)
-    yield share("2x step: corrected", twice[STEP], _FOUND, 0.5, at_most=True)
+    yield share("2x step: listed", twice[kinds.STEP], _LISTED, None)
+    yield share("2x step: corrected", twice[kinds.STEP], _FOUND, 0.5, at_most=True)
 
 
 def _named(o: Outcome) -> bool:
@@ -159,7 +147,7 @@ def _named(o: Outcome) -> bool:
 def _told(rows: Rows) -> Iterator[Figure]:
     """Groups by the chance that they were told with: how many are right, and how far that is from
     what was told."""
-    some = [o for row in (*(f"{size:g}x" for size in SIZES), TWO) for o in rows[row]]
+    some = [o for row in (*(f"{size:g}x" for size in kinds.SIZES), kinds.TWO) for o in rows[row]]
     each = [
         (p, any(effect in group.split("+") for effect, _ in o.device.effects))
         for o in some
@@ -179,9 +167,9 @@ def _told(rows: Rows) -> Iterator[Figure]:
 
 def _curves(group: list[Outcome]) -> Iterator[Figure]:
     tied = partial(Outcome.tied_to, channels=(CURVE_OF,))
-    yield share(f"{CURVE}: tied to it", group, tied, 95.0)
+    yield share(f"{kinds.CURVE}: tied to it", group, tied, 95.0)
     for effect, some in _by_effect(group).items():
-        name = f"{CURVE}, {effect}"
+        name = f"{kinds.CURVE}, {effect}"
         yield share(f"{name}: tied to it", some, tied, None)
         if after := [o.after for o in some if o.within]:
             yield _times(f"{name}: error after, mean", float(np.mean(after)), 1.2, len(after))
@@ -207,11 +195,11 @@ def _removed(rows: Rows) -> Iterator[Figure]:
     for effect in _NAMED:
         sizes = _after(rows, (effect,))
         if sizes:
-            limit, number = 1.3 if effect == KINK else 1.1, sum(map(len, sizes))
+            limit, number = 1.3 if effect == kinds.KINK else 1.1, sum(map(len, sizes))
             mean, square = (np.mean([np.mean(s**power) for s in sizes]) for power in (1, 2))
             yield _times(f"2x-5x {effect}: error after, mean", mean, limit, number)
             yield _times(f"2x-5x {effect}: error after, rms", np.sqrt(square), None, number)
-    sizes = _after(rows, CATALOGUE)
+    sizes = _after(rows, kinds.CATALOGUE)
     if sizes:
         mean, number = np.mean([s.mean() for s in sizes]), sum(map(len, sizes))
         yield _times("2x-5x all fourteen: error after, mean", mean, 1.1, number)
@@ -219,7 +207,7 @@ def _removed(rows: Rows) -> Iterator[Figure]:
 
 def _after(rows: Rows, effects: Sequence[str]) -> list[np.ndarray]:
     """The errors after of devices with one of the effects, of each size that there is."""
-    groups = [rows[f"{size:g}x"] for size in SIZES]
+    groups = [rows[f"{size:g}x"] for size in kinds.SIZES]
     each = [[o.after for o in group if o.device.effects[0][0] in effects] for group in groups]
     return [np.array(after) for after in each if after]
 
@@ -230,11 +218,11 @@ def _times(name: str, value: float, limit: float | None, devices: int) -> Figure
 
 def _many_widths(rows: Rows) -> Iterator[Figure]:
     """Hysteresis of Prandtl-Ishlinskii form: of all numbers of power-ons, and of each."""
-    each = {row: group for row, group in rows.items() if row.startswith(MANY_WIDTHS)}
+    each = {row: group for row, group in rows.items() if row.startswith(kinds.MANY_WIDTHS)}
     every = [o for group in each.values() for o in group]
     yield from _of_many_widths("", every, 95.0, 1.2)
-    yield from _of_many_widths(", told but for its start", rows[TOLD])
-    yield from _of_many_widths(", kept where it starts", rows[START_KNOWN], 95.0, 1.2)
+    yield from _of_many_widths(", told but for its start", rows[kinds.TOLD])
+    yield from _of_many_widths(", kept where it starts", rows[kinds.START_KNOWN], 95.0, 1.2)
     for row, group in each.items():
         yield from _of_many_widths(f", {row.split()[-1]} power-ons", group)
 

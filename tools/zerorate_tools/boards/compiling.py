@@ -46,7 +46,8 @@ def board_files(
     """
     found = {}
     for name, path in part_files(parts, code).items():
-        if name.name == "__init__.py" and not _does_something(path):
+        body = ast.parse(path.read_text(encoding="utf-8")).body
+        if name.name == "__init__.py" and all(isinstance(node, ast.Expr) for node in body):
             continue
         if facts.mpy[0] == mpy_version()[0]:
             is_code = code and name.name.startswith(f"{code}_")
@@ -62,11 +63,6 @@ def board_files(
         else:
             found[name] = path.read_bytes()
     return found
-
-
-def _does_something(path: Path) -> bool:
-    body = ast.parse(path.read_text(encoding="utf-8")).body
-    return any(not isinstance(node, ast.Expr) for node in body)
 
 
 def compiled(path: Path, name: str, *options: str, text: str | None = None) -> bytes:

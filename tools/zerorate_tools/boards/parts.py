@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from functools import cache
 from importlib.resources import files
 from importlib.util import find_spec
-from itertools import accumulate
+from itertools import accumulate, chain
 from pathlib import Path, PurePosixPath
 
 from ..errors import ZerorateError
@@ -67,12 +67,9 @@ def chosen_parts(named: Iterable[str]) -> tuple[str, ...]:
 def parts_there(files: Iterable[PurePosixPath]) -> set[str]:
     """The parts of which a board has every module that a program imports, by its files in lib."""
     there = {".".join(file.with_suffix("").parts) for file in files}
-    return {part for part, roots in PARTS.items() if there.issuperset(_modules(roots))}
-
-
-def _modules(roots: Iterable[str]) -> Iterator[str]:
-    """Those that are no package: of a package that does nothing a board gets no file."""
-    return (root for root in roots if module_file(root).name != "__init__.py")
+    # of a package that does nothing a board gets no file
+    there |= {root for root in chain(*PARTS.values()) if module_file(root).name == "__init__.py"}
+    return {part for part, roots in PARTS.items() if there.issuperset(roots)}
 
 
 def part_files(parts: Iterable[str], code: str = "") -> dict[PurePosixPath, Path]:

@@ -54,7 +54,7 @@ def stream(port_or_bus: str, take: Take, *, seconds: float | None = None, **opti
 
 def _of_a_hand(source: str, take: Take, *, seconds: float | None, **options: Any) -> None:
     from .bus import stream_bus
-    from .fake_hand import in_hand
+    from .fake_chip import in_hand
 
     _check_no_setup(source, options)
     given = {name: options[name] for name in ("address", "part") if name in options}

@@ -10,7 +10,7 @@ import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
-from ..numbers import counted
+from ..numbers import counted, listed
 from .part import Part, alone, removed_mdps, scale_of
 from .population import TERMS, UNITS, Curve
 from .prior import SCENARIOS, WAYS
@@ -140,7 +140,7 @@ def _effect(effect: dict[str, Any], degc: float) -> Iterator[str]:
             f"devices differ by {deviation:.2g}: {verdict}"
         )
     if effect["unusual_devices"]:
-        yield f"  unlike the others: {_some(effect['unusual_devices'])}"
+        yield f"  unlike the others: {listed(effect['unusual_devices'], _NAMES)}"
 
 
 def _prior(prior: dict[str, Any]) -> Iterator[str]:
@@ -177,8 +177,3 @@ def _failures(failures: list[dict[str, str]]) -> Iterator[str]:
         yield f"  {failure['file']}: {reason}"
     if len(failures) > _FAILURES:
         yield f"  and {len(failures) - _FAILURES} more, all in fleet.json"
-
-
-def _some(names: list[str]) -> str:
-    more = f" and {len(names) - _NAMES} more" if len(names) > _NAMES else ""
-    return ", ".join(names[:_NAMES]) + more

@@ -7,16 +7,7 @@ from typing import Any
 import numpy as np
 from scipy import stats
 
-from .population import (
-    CENTRE_DEGC,
-    LEAST_DEVICES,
-    PER_DEGC,
-    TERMS,
-    UNITS,
-    Curve,
-    Population,
-    population,
-)
+from . import population
 
 _SHOWN = 0.05
 _MOSTLY = 0.75
@@ -31,8 +22,8 @@ class Part:
     """
 
     names: list[str]
-    curves: list[Curve]
-    axes: list[Population]
+    curves: list[population.Curve]
+    axes: list[population.Population]
     reference_degc: float
     low_degc: float
     high_degc: float
@@ -54,37 +45,39 @@ class Part:
 
     def at(self, degc: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Mean curve and its deviation between devices, (n, 3) dps each, at temperatures (n,)."""
-        basis = np.vander((np.asarray(degc, float) - self.reference_degc) * PER_DEGC, 3, True)
+        basis = np.vander(
+            (np.asarray(degc, float) - self.reference_degc) * population.PER_DEGC, 3, True
+        )
         mean = np.stack([basis @ axis.mean for axis in self.axes], axis=1)
         variance = [np.einsum("ni,ij,nj->n", basis, axis.spread, basis) for axis in self.axes]
         return mean, np.sqrt(np.stack(variance, axis=1))
 
 
-def part_of(names: Sequence[str], curves: Sequence[Curve]) -> Part | None:
+def part_of(names: Sequence[str], curves: Sequence[population.Curve]) -> Part | None:
     """Estimate a part; None for fewer than five devices."""
-    if len(names) < LEAST_DEVICES:
+    if len(names) < population.LEAST_DEVICES:
         return None
     seen = np.array([[c.low_degc, c.high_degc] for c in curves])
-    reference, low, high = CENTRE_DEGC, float("nan"), float("nan")
+    reference, low, high = population.CENTRE_DEGC, float("nan"), float("nan")
     if not np.isnan(seen).any():
         reference = float(np.round(np.median(seen.mean(axis=1))))
         low, high = float(np.quantile(seen[:, 0], 0.05)), float(np.quantile(seen[:, 1], 0.95))
     back = np.linalg.inv(_moved(reference))
     information = np.stack([back.T @ c.information @ back for c in curves])
     score = np.stack([c.score @ back for c in curves])
-    axes = [population(information[:, a], score[:, a]) for a in range(3)]
+    axes = [population.population(information[:, a], score[:, a]) for a in range(3)]
     return Part(list(names), list(curves), axes, reference, low, high)
 
 
 def _moved(reference_degc: float) -> np.ndarray:
     """(3, 3) that takes coefficients at the centre to those at the reference."""
-    by = (reference_degc - CENTRE_DEGC) * PER_DEGC
+    by = (reference_degc - population.CENTRE_DEGC) * population.PER_DEGC
     return np.array([[1, by, by**2], [0, 1, 2 * by], [0, 0, 1]])
 
 
 def scale_of(term: int) -> float:
     """From a coefficient per tens of degC to one per degC."""
-    return PER_DEGC**term
+    return population.PER_DEGC**term
 
 
 def curve_effects(part: Part) -> list[dict[str, Any]]:
@@ -96,7 +89,7 @@ def curve_effects(part: Part) -> list[dict[str, Any]]:
     share_beyond_noise: of the devices' variance (I^2 of Higgins and Thompson 2002).
     """
     effects = []
-    for term, (name, unit) in enumerate(zip(TERMS, UNITS)):
+    for term, (name, unit) in enumerate(zip(population.TERMS, population.UNITS)):
         if not any(name in c.shown for c in part.curves):
             continue
         scale = scale_of(term)
@@ -135,7 +128,7 @@ def _verdict(of: dict[str, Any]) -> str:
 def _differ(part: Part, axis: int, term: int) -> dict[str, float]:
     """Cochran's Q: probability of devices so different by noise alone (of nine such tests), and
     the share of their variance beyond it."""
-    curves = [c for c in part.curves if TERMS[term] in c.shown]
+    curves = [c for c in part.curves if population.TERMS[term] in c.shown]
     if len(curves) < 2:
         return {"p_devices_differ": 1.0, "share_beyond_noise": 0.0}
     values, errors = (of[:, axis, term] for of in alone(curves))
@@ -149,7 +142,7 @@ def _differ(part: Part, axis: int, term: int) -> dict[str, float]:
     }
 
 
-def alone(curves: Sequence[Curve]) -> tuple[np.ndarray, np.ndarray]:
+def alone(curves: Sequence[population.Curve]) -> tuple[np.ndarray, np.ndarray]:
     """(n, 3 axes, 3 terms) coefficients at 25 degC as each device alone tells them, and errors."""
     covariance = np.linalg.inv(np.stack([c.information for c in curves]))
     values = np.einsum("naij,naj->nai", covariance, np.stack([c.score for c in curves]))
@@ -159,7 +152,7 @@ def alone(curves: Sequence[Curve]) -> tuple[np.ndarray, np.ndarray]:
 def _unusual(part: Part, term: int) -> list[str]:
     """Devices that differ from all others, for which nothing common explains them."""
     rows = zip(part.names, part.curves, part.p_unusual[:, term])
-    return [name for name, curve, p in rows if p < _SHOWN and TERMS[term] in curve.shown]
+    return [name for name, curve, p in rows if p < _SHOWN and population.TERMS[term] in curve.shown]
 
 
 def step_effects(results: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:

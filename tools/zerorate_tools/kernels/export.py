@@ -13,18 +13,7 @@ from zerorate.storage.learned_store import _STATE_VERSION
 from zerorate.storage.reasons import REASONS
 from zerorate.storage.soundness import _NEAR_Q8
 
-from zerorate_tools import __version__
-from zerorate_tools.layout import (
-    AXIS,
-    EFFECTS,
-    ESTIMATOR,
-    MARKS,
-    SETTINGS,
-    SOURCE,
-    STATE,
-    STILLNESS,
-    STORE,
-)
+from zerorate_tools import __version__, layout
 
 from ..model.binary import encoded
 from ..model.files import check_model, sensor_for
@@ -34,7 +23,12 @@ from .reading import Kernels
 
 _SAMPLES = 5000
 _FOLDER = Path(__file__).parent / "exported"
-_ARRAYS = {"STATE": STATE, "AXIS": AXIS, "ESTIMATOR": ESTIMATOR, "SETTINGS": SETTINGS}
+_ARRAYS = {
+    "STATE": layout.STATE,
+    "AXIS": layout.AXIS,
+    "ESTIMATOR": layout.ESTIMATOR,
+    "SETTINGS": layout.SETTINGS,
+}
 _PACKAGED = (
     *("library.json", "library.properties", "CMakeLists.txt", "idf_component.yml"),
     *("zephyr/module.yml", "zephyr/Kconfig", "examples/yaw/yaw.ino"),
@@ -150,18 +144,18 @@ def _code(corrector: Corrector) -> dict[str, str]:
     """Name -> text of the header, the C file and the test program."""
     state, c, dt_us = corrector.state, corrector.settings, round(1e6 / corrector.sensor.odr_hz)
     words, channels, pieces = _of_model(corrector.effects)
-    counts = {"STATE": len(state), "SETTINGS": len(c), "EFFECTS": EFFECTS.size}
+    counts = {"STATE": len(state), "SETTINGS": len(c), "EFFECTS": layout.EFFECTS.size}
     header = {f"{name}_WORDS": str(count) for name, count in counts.items()}
     header |= {"EFFECTS": words, "CHANNELS": channels}
-    last = max(STORE.numbers.values())
+    last = max(layout.STORE.numbers.values())
     header["REASONS"] = "\n".join(
         f"    ZERORATE_{name} = {number}{',' * (number < last)} /* {REASONS[number]} */"
-        for name, number in STORE.numbers.items()
+        for name, number in layout.STORE.numbers.items()
     )
     source = _SOURCE.format(settings=", ".join(map(str, c)), state=_pairs(state), **pieces)
     if corrector.effects is not None:
         count = len(corrector.effects.channels)
-        source += _CHANNEL.format(count=count, at=EFFECTS.CHANNELS)
+        source += _CHANNEL.format(count=count, at=layout.EFFECTS.CHANNELS)
     return {
         "zerorate.h": _filled("zerorate.h", corrector.sensor, header),
         "zerorate_units.h": _filled("zerorate_units.h", corrector.sensor),
@@ -180,8 +174,12 @@ def _stored(corrector: Corrector) -> str:
         for name, array in _ARRAYS.items()
         for word in sorted(set(re.findall(rf"\b{name}_(\w+)", text)) - {"BITS"})
     }
-    words |= {"NO_VALUE": MARKS.NO_VALUE, "FREE": MARKS.FREE, "STILL": STILLNESS.STILL}
-    words |= {"ANY_TEMPERATURE": SOURCE.ANY_TEMPERATURE, "NEAR_Q8": _NEAR_Q8}
+    words |= {
+        "NO_VALUE": layout.MARKS.NO_VALUE,
+        "FREE": layout.MARKS.FREE,
+        "STILL": layout.STILLNESS.STILL,
+    }
+    words |= {"ANY_TEMPERATURE": layout.SOURCE.ANY_TEMPERATURE, "NEAR_Q8": _NEAR_Q8}
     words |= {"RECORD_VERSION": _STATE_VERSION, "OWN_STEP_LSB": corrector._step_lsb}
     crc = corrector.effects.crc if corrector.effects is not None else b""
     words |= {"MODEL_CRC": f"0x{int.from_bytes(crc, 'little'):08x}u"}

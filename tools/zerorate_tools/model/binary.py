@@ -9,18 +9,12 @@ from os import PathLike
 from typing import Any
 
 from ..errors import BadModel
+from ..layout import INPUT_KIND, LIMITS
 from ..recordings import Scales
 from .model import (
     FAST,
     FRAME,
-    MOST_CHANNELS,
-    MOST_INPUTS,
-    MOST_PLAYS,
-    MOST_RINGS,
-    MOST_SLOTS,
-    MOST_TABLES,
     ONE,
-    TABLE_POINTS,
     TIME,
     VIBRATION,
     Binding,
@@ -40,7 +34,6 @@ _HEAD = struct.Struct("<3sBHBBBBBx4BI5d")
 _INPUT, _SLOT, _TABLE = struct.Struct("<3i"), struct.Struct("<30i"), struct.Struct("<9i")
 _PLAY = struct.Struct("<13i")
 _KINDS = (*FRAME, VIBRATION, TIME, ONE, *FAST)
-_FIRST_CHANNEL = 16
 #: The code of what is not known.
 ANY = 255
 _Q24 = 1 << 24
@@ -175,18 +168,18 @@ def _check_room(model: Model, plain: Sequence[Slot], plays: int) -> None:
         raise CannotDeploy(f"a tick of {model.tick_s:g} s; 0.01..536 s are possible")
     tables = [s.term.table for s in model.slots if s.term.table]
     for what, number, most in (
-        ("effect slots", len(plain), MOST_SLOTS),
-        ("play operators", plays, MOST_PLAYS),
-        ("sources", len(model.inputs), MOST_INPUTS),
-        ("tables", len(tables), MOST_TABLES),
-        ("delays", sum(s.has_delay(model.tick_s) for s in model.slots), MOST_RINGS),
-        ("extra channels", len(model.channels), MOST_CHANNELS),
+        ("effect slots", len(plain), LIMITS.MOST_SLOTS),
+        ("play operators", plays, LIMITS.MOST_PLAYS),
+        ("sources", len(model.inputs), LIMITS.MOST_INPUTS),
+        ("tables", len(tables), LIMITS.MOST_TABLES),
+        ("delays", sum(s.has_delay(model.tick_s) for s in model.slots), LIMITS.MOST_RINGS),
+        ("extra channels", len(model.channels), LIMITS.MOST_CHANNELS),
     ):
         if number > most:
             raise CannotDeploy(f"the firmware has room for {most} {what}, the model needs {number}")
     for table in tables:
-        if len(table) != TABLE_POINTS or any(not abs(v) <= 1 for v in table):
-            raise CannotDeploy(f"a table has {TABLE_POINTS} values within -1..1")
+        if len(table) != LIMITS.TABLE_POINTS or any(not abs(v) <= 1 for v in table):
+            raise CannotDeploy(f"a table has {LIMITS.TABLE_POINTS} values within -1..1")
     there = {(i.name, i.of_the_sample) for i in model.inputs}
     if {_there(*source, there) for source in sources_of(model.slots)} - there:
         raise CannotDeploy("a slot follows a source that is no input of the model")
@@ -199,19 +192,20 @@ def _there(name: str, of_the_sample: bool, among: Container[tuple[str, bool]]) -
 
 def _kind(source: Input, channels: Sequence[str]) -> int:
     if is_channel(source.name):
-        first = _FIRST_CHANNEL + MOST_CHANNELS * source.of_the_sample
+        now = source.of_the_sample
+        first = INPUT_KIND.KIND_CHANNEL_NOW if now else INPUT_KIND.KIND_CHANNEL
         return first + list(channels).index(source.name)
     if source.of_the_sample:
-        return _KINDS.index(ONE) + 1 + FAST.index(source.name)
+        return INPUT_KIND.KIND_INSTANT + FAST.index(source.name)
     return _KINDS.index(source.name)
 
 
 def _input(raw: Sequence[int], channels: Sequence[str]) -> Input:
     kind, shift, offset = raw
-    if kind >= _FIRST_CHANNEL:
-        now, at = divmod(kind - _FIRST_CHANNEL, MOST_CHANNELS)
+    if kind >= INPUT_KIND.KIND_CHANNEL:
+        now, at = divmod(kind - INPUT_KIND.KIND_CHANNEL, LIMITS.MOST_CHANNELS)
         return Input(channels[at], bool(now), shift, offset)
-    return Input(_KINDS[kind], kind > _KINDS.index(ONE), shift, offset)
+    return Input(_KINDS[kind], kind >= INPUT_KIND.KIND_INSTANT, shift, offset)
 
 
 def codes_of(binding: Binding) -> bytes:

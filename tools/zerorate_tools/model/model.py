@@ -7,12 +7,13 @@ from zerorate_i2c.parts import part_by_name
 from zerorate_i2c.settings import ACCEL_LSB_PER_G, GYRO_LSB_PER_DPS
 
 from ..errors import ZerorateError
+from ..layout import LIMITS
 from ..recordings import Scales
 from .term import Term
 
-MOST_SLOTS, MOST_INPUTS, MOST_TABLES, MOST_RINGS, MOST_CHANNELS = 8, 12, 2, 2, 8
-MOST_PLAYS = 6
-TABLE_POINTS = 9
+MOST_SLOTS, MOST_PLAYS, MOST_CHANNELS = LIMITS.MOST_SLOTS, LIMITS.MOST_PLAYS, LIMITS.MOST_CHANNELS
+MOST_TABLES, MOST_RINGS = LIMITS.MOST_TABLES, LIMITS.MOST_RINGS
+TABLE_POINTS = LIMITS.TABLE_POINTS
 RATES = ("rate_x", "rate_y", "rate_z")
 ACCELERATIONS = ("acc_x", "acc_y", "acc_z")
 FRAME = (*ACCELERATIONS, "temp", *RATES)

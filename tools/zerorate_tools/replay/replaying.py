@@ -20,18 +20,6 @@ from zerorate.settings import DEFAULTS
 from zerorate.storage.soundness import is_sound
 
 from zerorate_tools import layout
-from zerorate_tools.layout import (
-    EFFECTS,
-    GRAVITY,
-    INPUT,
-    LIMITS,
-    MOTION,
-    MOTION_SETTINGS,
-    PLAY,
-    SLOT,
-    STATE,
-    Array,
-)
 
 from ..bounds import bytes_of
 from ..errors import BadModel, InFile, ZerorateError
@@ -212,13 +200,13 @@ def load_state(corrector: Corrector, path: Path, resume: bool) -> None:
 
 def _is_same_model(e: array[int], words: array[int]) -> bool:
     """Whether the words that a model left are those of effect model `e`."""
-    first = EFFECTS
+    first = layout.EFFECTS
     counts = (first.SLOT_COUNT, first.INPUT_COUNT, first.TICK_US, first.SLOTS_A_SAMPLE)
     given = {*counts, first.INSTANT_SLOTS, first.PLAY_COUNT, *range(first.TABLES, first.RINGS)}
     for at, block, end, most in (
-        (first.INPUTS, INPUT, INPUT.INPUT_SUM, LIMITS.MOST_INPUTS),
-        (first.SLOTS, SLOT, SLOT.SLOT_STARTED, LIMITS.MOST_SLOTS),
-        (first.PLAYS, PLAY, PLAY.PLAY_STARTED, LIMITS.MOST_PLAYS),
+        (first.INPUTS, layout.INPUT, layout.INPUT.INPUT_SUM, layout.LIMITS.MOST_INPUTS),
+        (first.SLOTS, layout.SLOT, layout.SLOT.SLOT_STARTED, layout.LIMITS.MOST_SLOTS),
+        (first.PLAYS, layout.PLAY, layout.PLAY.PLAY_STARTED, layout.LIMITS.MOST_PLAYS),
     ):
         given.update(at + i * block.size + k for i in range(most) for k in range(end))
     left = words[: len(e)]
@@ -285,13 +273,13 @@ def can_be_a_state(corrector: Corrector) -> bool:
     state, motion, gravity = corrector.state, corrector.motion, corrector.gravity
     return (
         is_sound(state, corrector.settings)
-        and _words_hold(state, STATE)
-        and (gravity is None or _words_hold(gravity, GRAVITY))
-        and (motion is None or _words_hold(motion, MOTION) and _nodes_hold(corrector))
+        and _words_hold(state, layout.STATE)
+        and (gravity is None or _words_hold(gravity, layout.GRAVITY))
+        and (motion is None or _words_hold(motion, layout.MOTION) and _nodes_hold(corrector))
     )
 
 
-def _words_hold(words: Sequence[int], array: Array) -> bool:
+def _words_hold(words: Sequence[int], array: layout.Array) -> bool:
     for word in (word for word in array.words if not word.while_text):
         kind, _, name = word.unit.partition(" ")
         codes = set(getattr(layout, name).numbers.values()) if kind == "code" else None
@@ -303,6 +291,6 @@ def _words_hold(words: Sequence[int], array: Array) -> bool:
 
 
 def _nodes_hold(corrector: Corrector) -> bool:
-    words, nodes = corrector.motion, corrector.motion_settings[MOTION_SETTINGS.NODES]
-    at = [word.index for word in MOTION.words if word.unit == "node"]
-    return all(0 <= words[i] < nodes for i in at) and words[MOTION.FILLED] <= nodes
+    words, nodes = corrector.motion, corrector.motion_settings[layout.MOTION_SETTINGS.NODES]
+    at = [word.index for word in layout.MOTION.words if word.unit == "node"]
+    return all(0 <= words[i] < nodes for i in at) and words[layout.MOTION.FILLED] <= nodes

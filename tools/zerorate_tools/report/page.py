@@ -224,9 +224,6 @@ def deployment(folder: Path, channels: Sequence[str]) -> Deployment:
     """What to type and to write for the model in `folder`, which follows these extra channels."""
     model = shlex.quote(str(folder / "model.bin"))
     commands = f"zerorate model check {model}\nzerorate flash /dev/ttyACM0 --model {model}\n"
-    lines = [f"effects.channel({name!r}, {_variable(name)})" for name in channels]
-    return Deployment(commands, _LOAD, "".join(f"{line}\n" for line in lines))
-
-
-def _variable(name: str) -> str:
-    return name if name.isidentifier() and name.isascii() else "value"
+    values = [name if name.isidentifier() and name.isascii() else "value" for name in channels]
+    lines = [f"effects.channel({name!r}, {value})\n" for name, value in zip(channels, values)]
+    return Deployment(commands, _LOAD, "".join(lines))

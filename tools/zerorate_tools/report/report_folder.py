@@ -9,18 +9,11 @@ from ..loop.read.ticks import AnyPath
 from ..loop.verify.analysis import Analysis
 from ..model import read_model
 from ..recordings.atomic import final
+from . import residual_plots
 from .effect_plots import effect_plots
 from .estimators import held_over_time, inside, moments
 from .page import deployment, page
 from .plot import Plot
-from .residual_plots import (
-    against_temperature,
-    against_time,
-    at_a_glance,
-    deviations,
-    fitted_noise,
-    held_out,
-)
 from .sentences import title
 
 #: Moments at which the firmware's state is looked at, of all recordings together.
@@ -47,13 +40,15 @@ def plots_of(
     analysis: Analysis, result: Mapping[str, Any], logs: Sequence[AnyPath], folder: AnyPath
 ) -> tuple[list[Plot], list[str]]:
     """Every plot that these recordings allow, and sentences on those that they do not."""
-    parts, notes = held_out(analysis), []
+    parts, notes = residual_plots.held_out(analysis), []
     names = [title(s["effect"], s["sources"]) for s in result["effects"]]
     plots: list[Plot | None] = [
-        at_a_glance(result),
-        against_time(parts, result["events"]),
-        against_temperature(parts),
-        deviations(parts, fitted_noise(analysis), result["floor_mdps"]),
+        residual_plots.at_a_glance(result),
+        residual_plots.against_time(parts, result["events"]),
+        residual_plots.against_temperature(parts),
+        residual_plots.deviations(
+            parts, residual_plots.fitted_noise(analysis), result["floor_mdps"]
+        ),
         *effect_plots(analysis, names),
     ]
     slots = any(effect["coefficients"] for effect in result["effects"])

@@ -13,14 +13,10 @@ from contextlib import suppress
 from functools import partial
 from pathlib import Path
 
-from zerorate_tools.errors import MissingRuntime
-from zerorate_tools.runtimes.node import fetch_wasm, find_wasm
-from zerorate_tools.runtimes.runtime import CPython, Result, Runtime, UnixPort
-from zerorate_tools.runtimes.unix_port import (
-    ARCHITECTURES,
-    fetch_unix_port,
-    find_unix_port,
-)
+from ..errors import MissingRuntime
+from .node import fetch_wasm, find_wasm
+from .runtime import CPython, Result, Runtime, UnixPort
+from .unix_port import ARCHITECTURES, fetch_unix_port, find_unix_port
 
 __all__ = ["NAMES", "Result", "Runtime", "available", "fetch", "find", "how_to_get"]
 

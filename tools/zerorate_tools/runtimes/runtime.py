@@ -89,7 +89,9 @@ class Runtime(ABC):
             )
             result = self._start(job, timeout)
         if check and result.returncode:
-            raise ZerorateError(_why_failed(self.name, job.script, result))
+            said = (result.stderr or result.stdout).strip().splitlines() or ["no message"]
+            how = f"{job.script} failed on {self.name} with exit code {result.returncode}"
+            raise ZerorateError(f"{how}: {said[-1]}")
         return result
 
     def _start(self, job: Job, timeout: float | None) -> Result:
@@ -143,11 +145,6 @@ def _stage_files(folder: Path, files_in: Mapping[str, bytes | Path]) -> None:
 def _read_back(job: Job) -> dict[str, bytes]:
     written = {name: job.folder / name for name in job.files_out}
     return {name: path.read_bytes() for name, path in written.items() if path.is_file()}
-
-
-def _why_failed(name: str, script: str, result: Result) -> str:
-    lines = (result.stderr or result.stdout).strip().splitlines() or ["no message"]
-    return f"{script} failed on {name} with exit code {result.returncode}: {lines[-1]}"
 
 
 class CPython(Runtime):

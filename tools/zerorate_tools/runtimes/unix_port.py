@@ -97,8 +97,9 @@ def fetch_packages(folder: Path, architecture: str, packages: Sequence[str]) -> 
         pinned = _pinned(architecture)
         if set(packages) - set(pinned):
             raise
-        for package in packages:
-            _download_pinned(mirror, folder, *pinned[package])
+        for sha256, path in map(pinned.__getitem__, packages):
+            uri, target = f"{mirror}/{path}", str(folder / Path(path).name)
+            _output_of([_APT_HELPER, "download-file", uri, target, f"SHA256:{sha256}"])
     return sorted(folder.glob("*.deb"))
 
 
@@ -135,11 +136,6 @@ def _pinned(architecture: str) -> dict[str, tuple[str, str]]:
     lines = [line.split() for line in _PINNED.read_text(encoding="utf-8").splitlines()]
     wanted = [(sha, path) for sha, path in lines if path.endswith(f"_{architecture}.deb")]
     return {Path(path).name.split("_")[0]: (sha, path) for sha, path in wanted}
-
-
-def _download_pinned(mirror: str, folder: Path, sha256: str, path: str) -> None:
-    target = folder / Path(path).name
-    _output_of([_APT_HELPER, "download-file", f"{mirror}/{path}", str(target), f"SHA256:{sha256}"])
 
 
 def _second_configuration(state: Path, architecture: str) -> list[str]:

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ...errors import BadRecording
+from ...numbers import listed
 from ...recordings.recording import ACCEL, ATTITUDE, COLUMNS, GYRO, TEMP, TIME
 from ..tables.table import Chunk, Table
 from . import guesses
@@ -247,9 +248,8 @@ def _check_there(
     for mapped in wanted.values():
         for column in mapped.columns:
             if column not in table.names:
-                raise BadRecording(
-                    path, f"there is no column {column!r}", do=f"choose of {_list(table.names)}"
-                )
+                do = f"choose of {listed(table.names, _LISTED)}"
+                raise BadRecording(path, f"there is no column {column!r}", do=do)
     missing = [target for target in GYRO if target not in wanted]
     if missing:
         do = f"map it: --map {missing[0]}=COLUMN:UNIT"
@@ -357,20 +357,15 @@ def left_aside(plan: Plan, table: Table) -> list[str]:
         if guesses.is_unit(np.array([first[parts[name]] for name in ATTITUDE])):
             words = " ".join(map_words(n, parts[n]) for n in ATTITUDE)
             return [f"an attitude left aside; if it turns the body's axes into z up: {words}"]
-    return [f"left aside: {_list(aside, _TOLD)}; take one along as --map NAME=COLUMN"]
+    return [f"left aside: {listed(aside, _TOLD)}; take one along as --map NAME=COLUMN"]
 
 
 def _of(table: Table) -> str:
     first = table.first_rows(table.names)
     readable = [name for name in table.names if np.isfinite(first[name]).any()]
     other = [name for name in table.names if name and name not in readable]
-    words = f"COLUMN one of {_list(readable or table.names)}"
-    return words + (f"; {_list(other, _TOLD)}: no number alone in a cell" if other else "")
-
-
-def _list(names: list[str], most: int = _LISTED) -> str:
-    more = len(names) - most
-    return ", ".join(names[:most]) + (f" and {more} more" if more > 0 else "")
+    words = f"COLUMN one of {listed(readable or table.names, _LISTED)}"
+    return words + (f"; {listed(other, _TOLD)}: no number alone in a cell" if other else "")
 
 
 def _as_another_time(column: str, table: Table) -> tuple[str, str] | None:

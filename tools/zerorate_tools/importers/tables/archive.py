@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from ...errors import BadRecording
+from ...numbers import listed
 from ..columns import names as usual
 from ..columns.guesses import likely_columns, only_grows
 from .table import Chunk, Table
@@ -135,8 +136,7 @@ def _hold_rates(tables: dict[str, Table]) -> bool:
 def _by_shared_time(tables: dict[str, Table], path: Path) -> Table:
     rates = [stem for stem, table in tables.items() if usual.gyro_groups(table.names)]
     if len(rates) > 1 and not any("gyro" in stem.lower() for stem in rates):
-        more = f" and {len(rates) - _TOLD} more" if len(rates) > _TOLD else ""
-        problem = f"several recordings ({', '.join(rates[:_TOLD])}{more})"
+        problem = f"several recordings ({listed(rates, _TOLD)})"
         do = "import them together: zerorate import FILE FILE ... --out FOLDER"
         raise BadRecording(path, problem, do=do)
     times = Counter(name for t in tables.values() for name in usual.time_columns(t.names))
