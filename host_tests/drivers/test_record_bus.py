@@ -354,12 +354,12 @@ def test_the_chip_of_another_program_is_said_and_the_one_beside_it_is_had(tmp_pa
 
 @pytest.mark.skipif(
     not os.environ.get("ZERORATE_REQUIRE_LINUX_BUS"),
-    reason="it boots a Linux for a minute; ZERORATE_REQUIRE_LINUX_BUS=1 does so, as in CI",
+    reason="it boots a Linux for half a minute; ZERORATE_REQUIRE_LINUX_BUS=1 does so, as in CI",
 )
 def test_a_real_kernels_bus_is_recorded_from():
     fetch()
     found = run_guest()
-    assert found["code"] == 0 and found["rows"] > 100
+    assert found["code"] == 0 and found["rows"] > 60
     assert found["false_rows"] == found["out_of_order"] == 0
     assert found["really_lost"] < found["rows"]
     assert found["said_lost"] == pytest.approx(found["really_lost"], abs=found["rows"] / 10)

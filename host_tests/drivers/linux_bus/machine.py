@@ -37,7 +37,7 @@ def fetch() -> Path:
     return fill(folder(), _build)
 
 
-def run_guest(rate_hz: float = 25, seconds: float = 6) -> dict:
+def run_guest(rate_hz: float = 25, seconds: float = 4) -> dict:
     """What came of guest.py: rows, those that are false or out of order, and samples lost.
 
     Raises MissingRuntime when the machine has not been fetched, ZerorateError with the end of the
