@@ -130,7 +130,7 @@ def _qemu(root: Path, initramfs: Path) -> list[str]:
         *(str(libraries / "ld-linux-x86-64.so.2"), "--library-path", str(libraries)),
         str(root / "usr/bin/qemu-system-x86_64"),
         *("-L", str(root / "usr/share/seabios"), "-L", str(root / "usr/share/qemu")),
-        *("-accel", "tcg", "-cpu", "max", "-smp", "2", "-m", "1024", "-nographic", "-no-reboot"),
+        *("-accel", "tcg", "-cpu", "max", "-smp", "1", "-m", "1024", "-nographic", "-no-reboot"),
         *("-nic", "none", "-kernel", str(root / "vmlinuz"), "-initrd", str(initramfs)),
         *("-append", "console=ttyS0 quiet panic=-1 mitigations=off"),
         *("-fsdev", share, "-device", "virtio-9p-pci,fsdev=host,mount_tag=host"),
