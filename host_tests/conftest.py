@@ -1,5 +1,6 @@
 """What every area's tests stand on: interpreters, browser, the checkout, the real recordings."""
 
+import functools
 import os
 import shutil
 import sys
@@ -14,6 +15,7 @@ import numpy as np
 import pytest
 from zerorate_bench.boards.pico import VARIABLE, find_pico
 from zerorate_bench.boards.pico import boards_folder as named_folder
+from zerorate_tools import cli
 from zerorate_tools.errors import MissingRuntime
 from zerorate_tools.model import Slot, build_model, write_model
 from zerorate_tools.model.term import Term
@@ -30,6 +32,9 @@ _REQUIRED = frozenset(filter(None, os.environ.get("ZERORATE_REQUIRE", "").split(
 # What else is not of this project may lie beside the checkout, as the real recordings do.
 if (_REPOSITORY.parent / "shared" / "boards").is_dir():
     os.environ.setdefault(VARIABLE, str(_REPOSITORY.parent / "shared" / "boards"))
+
+# Hundreds of commands run in this process; it is the same for each.
+cli.parser = functools.cache(cli.parser)
 
 # No limits by the clock: machines differ, and are busy.
 hypothesis.settings.register_profile("zerorate", deadline=None)

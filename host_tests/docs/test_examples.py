@@ -94,7 +94,9 @@ class TestOnABoard:
     def test_what_was_learned_is_kept_over_a_power_cut(self, run):
         first = run("keep.py", interrupt=-1)
         assert first.stdout.splitlines()[1:3] == ["nothing was ever stored", "kept"], first.stderr
-        second = run("keep.py", {"learned.bin": first.files["learned.bin"]}, interrupt=-1)
+        second = run(
+            "keep.py", {"learned.bin": first.files["learned.bin"]}, interrupt=-1, seconds=1
+        )
         assert second.stdout.splitlines()[:2] == ["found: MPU-6050", "loaded"], second.stderr
 
     def test_what_cannot_be_kept_is_said_once_an_hour(self, run):

@@ -205,7 +205,7 @@ def test_on_a_phone_no_page_scrolls_sideways(site, browser):
     tab = browser.new_page(viewport={"width": 390, "height": 844})
     wide = {}
     for page in site.glob("*.html"):
-        tab.goto(page.as_uri())
+        tab.goto(page.as_uri(), wait_until="domcontentloaded")
         wide[page.name] = tab.evaluate("document.documentElement.scrollWidth")
     tab.close()
     assert {name: width for name, width in wide.items() if width > 390} == {}

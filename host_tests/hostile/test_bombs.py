@@ -84,10 +84,10 @@ def test_rows_without_an_end(tmp_path, what):
 
 @pytest.fixture(scope="module")
 def page(tmp_path_factory):
-    """A Parquet file with one page a column, each of half a gigabyte."""
+    """A Parquet file with one page a column, that of its times of half a gigabyte."""
     path = tmp_path_factory.mktemp("page") / "x.parquet"
     zeros = pa.array(np.zeros(1 << 26, np.int64))
-    table = pa.table(dict.fromkeys(("t_us", "gx", "gy", "gz"), zeros))
+    table = pa.table({"t_us": zeros} | dict.fromkeys(("gx", "gy", "gz"), zeros.cast(pa.int8())))
     scales = b'{"sensor": "X", "odr_hz": 1, "gyro_lsb_per_dps": 1}'
     pq.write_table(
         table.replace_schema_metadata({b"zerorate": scales}), path,

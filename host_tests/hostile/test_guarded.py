@@ -121,11 +121,15 @@ def test_an_import_runs_nothing_of_the_working_folder(trapped, name):
     assert not (trapped / "sprung").exists()
 
 
-def test_a_fleet_runs_nothing_of_the_working_folder(trapped):
-    (trapped / "x.csv").write_text("t_us,gx,gy,gz\n1,2,3,4\n")
+def test_a_fleet_runs_nothing_of_the_working_folder_and_names_a_folder_that_is_not_utf8(trapped):
+    for name in ("good", os.fsdecode(b"b\xffd")):
+        (trapped / "logs" / name).mkdir(parents=True)
+        (trapped / "logs" / name / "1.csv").write_text("t_us,gx,gy,gz\n1,2,3,4\n")
     zerorate = Path(sys.executable).with_name("zerorate")
-    fleet = [zerorate, "fleet", "x.csv", "--out", "o", "--workers", "1"]
-    subprocess.run(fleet, capture_output=True)
+    fleet = [zerorate, "fleet", "logs", "--out", "o", "--workers", "1"]
+    done = subprocess.run(fleet, capture_output=True, timeout=100)
+    said = (done.stdout + done.stderr).decode()
+    assert r"b\udcffd/1.csv: its name is not UTF-8; rename it" in said and "Traceback" not in said
     assert (trapped / "o" / "fleet.json").exists()
     assert not (trapped / "sprung").exists()
 

@@ -166,7 +166,7 @@ if sys.platform == "win32":
 
 
 def test_a_recorder_killed_at_a_random_moment_loses_two_seconds_at_most():
-    fallen, most_s, ends = trials(24, seed=1)
+    fallen, most_s, ends = trials(14, seed=1)
     assert not fallen and most_s <= MOST_S
     assert ends["run"] >= 8 and ends["recovered"] >= 2
 

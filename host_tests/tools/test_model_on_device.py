@@ -112,7 +112,7 @@ def test_a_model_longer_than_it_says_is_damaged_whatever_its_checksum(model, mor
 
 
 @given(noise=st.binary(max_size=300), at=st.integers(0, 1200))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=25, deadline=None)
 def test_bytes_of_any_kind_with_a_right_checksum_never_raise(noise, at):
     data = bytearray(encoded(build_model(SLOTS, SCALES)))[:-4]
     data[at : at + len(noise)] = noise

@@ -6,6 +6,7 @@ import ast
 import struct
 from array import array
 from collections.abc import Sequence
+from functools import cache
 from pathlib import Path
 from statistics import mean, median
 from typing import Any
@@ -177,6 +178,7 @@ def native_cost(work: Workload) -> dict[str, dict[str, Any]]:
     return {p: {how: _against_c(work, p, n) for how, n in ways.items()} for p in PROCESSORS}
 
 
+@cache
 def code_bytes() -> dict[str, dict[str, int]]:
     """Processor -> part -> bytes of machine code."""
     folder = firmware_package() / "native"
