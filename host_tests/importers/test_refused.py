@@ -23,7 +23,7 @@ UNNAMED_DATES = "\n".join(f"2026-05-01   10:00:{i // 5:02d} 0.8  0.8   0.9" for 
 NINE = np.tile(NOISE[:, :3], 3) * np.repeat([9, 1, 9], 3) + [0.8, -0.5, 0.3, 0, 0, 1, 20, -5, 40]
 WITH_A_RATE = "// Sample rate: 50.0Hz\nGyr_X;Gyr_Y;Gyr_Z\n" + "0.1;0.2;0.3\n" * 20
 SHAKEN = rates("t_s gx_dps gy_dps gz_dps ax ay az".split(), 500)
-SHAKEN[["ax", "ay", "az"]] = [0.5, 0.0, 11.0] + 5.0 * np.sin(np.outer(np.arange(500), [1, 2, 3]))
+SHAKEN[["ax", "ay", "az"]] = [0.5, 0.0, 11.6] + 5.0 * np.sin(np.outer(np.arange(500), [1, 2, 3]))
 TENS = np.arange(0, 5000, 10)
 MINUTE = rates("second gx_dps gy_dps gz_dps minute".split(), 500)
 CLOCK = 141700 + np.r_[30:60:0.1, 100:160:0.1]
@@ -79,6 +79,8 @@ LISTS = pd.DataFrame({"t_s": np.arange(300) / 100, "pulse": 70, "gyro": "[0.8, -
         (UNNAMED_DATES, {}, "--map t_us=2:s --map gx=3 --map gy=4 "),
         (lines(NOISE + [49.0, 0, 0, 0, 0, 0]), {}, "map it: --map gx=COLUMN:UNIT.* one of 1, 2, 3"),
         (SHAKEN, {}, "give --accel-unit m/s2 [(]or g, mg"),
+        (lines(np.column_stack([TENS / 1e3, SHAKEN.iloc[:, 4:] / 10, SHAKEN.iloc[:, 4:] - 0.6])),
+         {}, "--map t_us=1:s --map ax=5:m/s2 .*--map gx=2:rad/s"),
         (SHAKEN, {"units": {"accel": "g"}}, "mean m/s2[?] Give --accel-unit m/s2; else map other"),
         (WITH_A_RATE, {}, "--gyro-unit dps .*, --hz 50 [(]as the file says[)]"),
         (WITH_A_RATE.replace("// Sample rate", "Acquisition frequency"), {"units": {"gyro": "dps"}},

@@ -158,6 +158,18 @@ def test_rates_and_times_whose_unit_nobody_names_are_taken_as_they_must_be(tmp_p
     assert recording.gyro_dps().T == pytest.approx(rates, abs=0.1)
 
 
+def test_gravity_tells_the_unit_where_each_sensor_has_rows_of_its_own(tmp_path):
+    frame, _ = plain(UNITS_DPS["rad/s"])
+    axes = [["gx", "gy", "gz"], ["acc_x", "acc_y", "acc_z"]]
+    faster = np.arange(frame["t"].iloc[0], frame["t"].iloc[-1], 0.019)
+    force = pd.DataFrame({name: np.interp(faster, frame["t"], frame[name]) for name in axes[1]})
+    rows = pd.concat([frame.drop(columns=axes[1]), force.assign(t=faster)])
+    _, report = read(tmp_path, rows.sort_values("t"))
+    assert "gyro taken in rad/s: gravity turns with it" in report.notes
+    (doubt,) = read(tmp_path, rows, units={"gyro": "dps"})[1].doubts
+    assert "did you mean rad/s?" in doubt
+
+
 @pytest.mark.parametrize(("unit", "per_s"), [("ms", 1e3), ("us", 1e6), ("ns", 1e9)])
 def test_times_that_may_be_of_two_units_are_taken_so_that_the_rates_turn_gravity(
     tmp_path, unit, per_s

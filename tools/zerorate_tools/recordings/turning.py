@@ -48,8 +48,8 @@ class Size:
 def dps_of_one(rates: np.ndarray, force: np.ndarray, t_s: np.ndarray) -> Size | None:
     """The size of rates by which gravity turns; None where it does not tell.
 
-    rates, force: (3, n) in any unit, row by row; t_s: (n,). At rest and about the vertical gravity
-    points one way whatever the size is.
+    rates, force: (3, n) in any unit, NaN in rows of the other; t_s: (n,). At rest and about the
+    vertical gravity points one way whatever the size is.
     """
     spans = _spans(rates, force, t_s)
     if spans is None:
@@ -124,6 +124,7 @@ def _spans(
     rates: np.ndarray, force: np.ndarray, t_s: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray] | None:
     """Turns and forces (steps, 3, spans), both means over a step; None where there are too few."""
+    rates, force, t_s = _at_one_time(rates, force, t_s)
     whole = np.isfinite([*rates, *force, t_s]).all(axis=0)
     rates, force, t_s = rates[:, whole], force[:, whole], t_s[whole]
     step_s = float(np.median(np.diff(t_s))) if len(t_s) > 1 else 0.0
@@ -143,6 +144,21 @@ def _spans(
         for of in (rates, force)
     )
     return np.radians(rates * rows * step_s), force
+
+
+def _at_one_time(
+    rates: np.ndarray, force: np.ndarray, t_s: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Rates, force and times, the force put at the times of the rates where both have rows of their
+    own: none in its gaps."""
+    rated, felt = (np.isfinite([*of, t_s]).all(axis=0) for of in (rates, force))
+    if (rated & felt).any() or not felt.any():
+        return rates, force, t_s
+    at_s, t_s = t_s[felt], t_s[rated]
+    away_s = np.diff(at_s, prepend=-np.inf, append=np.inf)[np.searchsorted(at_s, t_s)]
+    near = away_s < 0.1 * _SPAN_S
+    lines = np.array([np.interp(t_s[near], at_s, axis[felt]) for axis in force])
+    return rates[:, rated][:, near], lines, t_s[near]
 
 
 def _lacking(turns: np.ndarray, forces: np.ndarray, taken: np.ndarray) -> np.ndarray:

@@ -14,6 +14,8 @@ from .units import ACCEL_G, RATE_DPS, RAW, TIME_S, factors_of, kind_of, unit_by_
 
 GRAVITY = {unit: 1.0 / in_g for unit, in_g in ACCEL_G.items()}
 _GRAVITY_WITHIN = 0.15
+#: Rows whose mean is a force without what shakes.
+_AT_ONCE = 4
 #: Seconds since 1970 of the years 2001 and 2100, which a counter since power-on may be, too: by its
 #: steps, which are as short as a second or so in a date.
 _CALENDAR_S, _STEP_OF_DATE_S = (1e9, 4.1e9), 1.5
@@ -340,9 +342,12 @@ def turns_as_gravity(columns: list[np.ndarray]) -> bool:
 
 
 def gravity_unit(columns: list[np.ndarray]) -> str | None:
-    """The unit in which three columns are as long as gravity."""
-    usual = _usual_length(columns)
-    near = (u for u, g in GRAVITY.items() if abs(usual / g - 1.0) < _GRAVITY_WITHIN)
+    """The unit in which three columns are as long as gravity, or their means over some rows: what
+    shakes a drone makes the force longer, and averages out."""
+    whole = len(columns[0]) // _AT_ONCE * _AT_ONCE
+    means = np.array(columns)[:, :whole].reshape(len(columns), -1, _AT_ONCE).mean(axis=2)
+    lengths = (_usual_length(columns), _usual_length([*means]))
+    near = (u for n in lengths for u, g in GRAVITY.items() if abs(n / g - 1.0) < _GRAVITY_WITHIN)
     return next(near, None)
 
 

@@ -15,7 +15,7 @@ from ..columns import guesses
 from ..columns.mapping import map_words
 from ..columns.plan import Plan
 from ..tables.table import Table
-from .gather import HELD, Gathered
+from .gather import FELT, HELD, Gathered
 
 _GRAVITY_WITHIN = 0.2
 #: A sensor's scale may be off by so much, and a speed that was gained adds little over so long.
@@ -210,21 +210,26 @@ def _gravity_turns_times(
     seen: dict[str, np.ndarray], plan: Plan, scales: Scales
 ) -> turning.Size | None:
     """How much faster gravity turns than the rates say; None where it does not tell."""
-    if plan.by_format or len(seen.get("ax", ())) != len(seen[TIME]):
+    if plan.by_format or "ax" not in seen:
         return None
     return turning.dps_of_one(*_turns(seen, plan, scales))
 
 
 def _turns(seen: Columns, plan: Plan, scales: Scales) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """(3, n) rates in dps, (3, n) force and (n,) seconds."""
+    """(3, n) rates in dps, (3, n) force and (n,) seconds; NaN in rows of the other."""
     rates, force = (np.array([seen[name] for name in axes]) for axes in (GYRO, ACCEL))
-    lsb = scales.gyro_lsb_per_dps if "gyro" in plan.raw else 1.0
-    return rates / lsb, force, seen[TIME] * 1e-6
+    rates /= scales.gyro_lsb_per_dps if "gyro" in plan.raw else 1.0
+    t_us = seen[TIME]
+    if FELT in seen:
+        t_us = np.append(t_us, seen[FELT])
+        no_rates, no_force = (np.full_like(of, np.nan) for of in (force, rates))
+        rates, force = np.hstack([rates, no_rates]), np.hstack([no_force, force])
+    return rates, force, t_us * 1e-6
 
 
 def _of_axes(seen: dict[str, np.ndarray], plan: Plan, scales: Scales) -> list[str]:
     """Rates that turn gravity as it is seen to turn if their axes are taken in another way."""
-    if len(seen.get("ax", ())) != len(seen[TIME]):
+    if "ax" not in seen:
         return []
     turns = _turns(seen, plan, scales)
     axes = turning.axes_of(*turns)
@@ -261,7 +266,7 @@ def _of_turning(
 
 def _of_standing(seen: Columns, plan: Plan, scales: Scales, path: Path) -> list[str]:
     """Rates that would turn gravity, which stays where it is."""
-    if plan.by_format or len(seen.get("ax", ())) != len(seen[TIME]):
+    if plan.by_format or "ax" not in seen:
         return []
     if not turning.turn_too_far(*_turns(seen, plan, scales)):
         return []

@@ -24,14 +24,16 @@ _FAST_SHARE = 0.001
 #: A bus that is late now and then repeats fewer rows.
 _OFTEN_NEW = 0.8
 _NO_TIME = "the time stamp is no number"
+#: Times of the accelerations that are looked at.
+FELT = "t_us of ax"
 HELD = "the reading before once more, read faster than the sensor measures"
 
 
 @dataclass
 class Gathered:
     """The rows, by time, and what they have in common. largest: by kind (gyro, accel).
-    looked_at: some hundred samples, and readings of acceleration and temperature, which may have
-    times of their own."""
+    looked_at: some hundred samples; where acceleration or temperature lacks some, readings of it
+    that have times of their own, those of acceleration FELT."""
 
     spool: Spool
     rows: int
@@ -163,7 +165,9 @@ class _Gathering:
         looked_at = {
             n: np.concatenate([k[n] for k in self.kept]) for n in (TIME, *self.readings)
         }  # fmt: skip
-        looked_at |= {name: np.concatenate(pieces) for name, pieces in self.beside.items()}
+        own = [n for n in (*ACCEL, TEMP) if not np.isfinite(looked_at.get(n, 0.0)).all()]
+        own += [FELT] * (ACCEL[0] in own)
+        looked_at |= {n: np.concatenate(self.beside[n]) for n in own if n in self.beside}
         return Gathered(
             self.spool, self.rows + sum(self.table.dropped.values()), self.samples,
             interval_us, self.largest,
@@ -286,8 +290,9 @@ class _Gathering:
         """Keep some readings of a sensor that may have rows of its own."""
         at = np.flatnonzero(np.isfinite([columns[name] for name in names]).all(axis=0))
         at = at[: _KEPT if self.beside.get(names[0]) else 50 * _KEPT]
-        for name in names if len(at) else ():
-            self.beside.setdefault(name, []).append(columns[name][at])
+        kept = {name: columns[name][at] for name in names} | {FELT: columns[TIME][at]}
+        for name in [*names, *(FELT,) * (names == ACCEL)] if len(at) else ():
+            self.beside.setdefault(name, []).append(kept[name])
 
     def _check(self) -> None:
         refuse_change_of_unit(self.unfiltered, self.plan, self.table, self.path)
