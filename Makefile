@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 # Halves of the list, not turns: what a module shares is made once then.
 PYTEST_ARGS ?= -n auto --dist worksteal
 
-.PHONY: demo test lint typecheck typecheck-tools pytest fuzz sweep day mutants attacks layout native docs site lock wasm runtimes node wheel clean
+.PHONY: demo test lint typecheck typecheck-tools pytest fuzz sweep day attacks layout native docs site lock wasm runtimes node wheel clean
 
 demo: $(VENV)/.tools wasm  ## the whole job on built-in input, no hardware
 	$(BIN)/zerorate demo
@@ -17,7 +17,7 @@ lint: $(VENV)/.dev
 	$(BIN)/ruff format --check .
 	$(BIN)/codespell
 
-# Kernels have rules of their own (host_tests/runtimes/kernel_rules.py), and machine code has no types.
+# Kernels have rules of their own (host_tests/runtimes/test_kernel_rules.py), and machine code has no types.
 FIRMWARE := $(shell find firmware/zerorate -name '*.py')
 KERNELS := $(shell grep -lrE --include='*.py' '^ptr(8|32) = None' firmware/zerorate)
 MACHINE_CODE := $(wildcard firmware/zerorate/native/*.py)
@@ -52,7 +52,7 @@ attacks: $(VENV)/.dev  ## every attack of docs/faults.md, until one succeeds
 	$(ATTACK) host_tests/tools -k 'test_model or test_atomic or test_drafts or test_growing'
 	$(ATTACK) host_tests/hostile -k any
 	$(BIN)/python -m host_tests.hostile.many_logs
-	$(ATTACK) -s host_tests/hostile/test_bombs.py
+	$(ATTACK) -s host_tests/hostile/test_guarded.py -k "end or page or mat or sidecar"
 	$(BIN)/python -m host_tests.tools.killed_writers
 	$(BIN)/python -m host_tests.tools.killed_recorders
 	$(ATTACK) host_tests/report/test_page.py host_tests/fleet/test_population.py -k name
@@ -61,10 +61,6 @@ attacks: $(VENV)/.dev  ## every attack of docs/faults.md, until one succeeds
 	$(ATTACK) host_tests/service -k 'not restarts'
 	$(BIN)/python -m host_tests.boards.day
 
-MUTANTS ?= 25
-mutants: $(VENV)/.dev  ## which of MUTANTS mutants of FILES the tests in TESTS kill
-	$(BIN)/python -m host_tests.mutants $(FILES) --tests $(TESTS) --each $(MUTANTS)
-
 layout: $(VENV)/.dev  ## write the constants of tools/zerorate_tools/layout where they are used
 	$(BIN)/python -m host_tests.layout
 
@@ -72,7 +68,7 @@ native: layout  ## write firmware/zerorate/native from the kernels
 	$(BIN)/python -m zerorate_bench.native.native_files
 
 docs: $(VENV)/.dev wasm  ## write what in docs/ and README.md is made by a command
-	$(BIN)/python -m host_tests.docs
+	$(BIN)/python -m host_tests.docs.outputs
 
 site: $(VENV)/.dev  ## docs/ as a site in site/, with search; site/index.html opens from disk
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict

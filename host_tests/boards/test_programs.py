@@ -1,6 +1,5 @@
 """The programs of docs/pico.md, word for word, on an emulated Pico with stock MicroPython."""
 
-import json
 import re
 import time
 from contextlib import suppress
@@ -18,7 +17,7 @@ from zerorate_tools.cli import main
 from zerorate_tools.recordings import read_recording
 
 from host_tests.firmware import trace
-from host_tests.firmware.trace_on_host import GOLDEN, checksums, corrector_for, frames
+from host_tests.firmware.trace_on_host import checksums, corrector_for, frames, golden
 
 from .day import Day, passed
 
@@ -249,7 +248,7 @@ def test_the_golden_trace_ends_in_the_committed_state(all_parts):
     options = {**trace.LIMITS, **trace.MODES[mode]}
     data = on_pico(all_parts, Play(rows, options, sensor=trace.SENSOR)).data
     state = data[-4 * len(corrector_for(mode).state) :]
-    assert checksums(state, b"")["state"] == json.loads(GOLDEN.read_text())[mode]["state"]
+    assert checksums(state, b"")["state"] == golden(mode)["state"]
 
 
 def test_what_the_own_program_learned_is_watched_and_not_replaced(

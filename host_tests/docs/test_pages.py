@@ -64,7 +64,7 @@ def test_programs_run_and_console_blocks_show_what_their_commands_print(
         folder.mkdir()
         fresh = refreshed(page, folder, but=DEMO)
         assert same_but_for_rounding(fresh, read(page)), (
-            f"`python -m host_tests.docs {page.name}` writes it anew:\n{fresh}"
+            f"`python -m host_tests.docs.outputs {page.name}` writes it anew:\n{fresh}"
         )
 
 

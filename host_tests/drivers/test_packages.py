@@ -24,7 +24,7 @@ from zerorate_tools.boards.parts import (
 from zerorate_tools.boards.short_names import short_names, shortened
 
 from host_tests.firmware import trace
-from host_tests.firmware.trace_on_host import GOLDEN, checksums
+from host_tests.firmware.trace_on_host import checksums, golden
 
 # What any build of MicroPython gives the freezing tool to know its strings by.
 STRINGS = "QCFG(BYTES_IN_LEN, (1))\nQCFG(BYTES_IN_HASH, (1))\nQ(__init__)\n"
@@ -187,8 +187,7 @@ def test_the_numbers_are_the_golden_ones(short, repository, find_runtime):
         files_out=["state.bin", "bias.bin"],
         check=True,
     )
-    golden = json.loads(GOLDEN.read_text())["ignoring"]
-    assert checksums(result.files["state.bin"], result.files["bias.bin"]) == golden
+    assert checksums(result.files["state.bin"], result.files["bias.bin"]) == golden("ignoring")
 
 
 def test_the_settings_leave_no_short_string_that_a_board_would_keep_for_good(short):

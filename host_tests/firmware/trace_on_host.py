@@ -16,6 +16,11 @@ GOLDEN = Path(__file__).resolve().parents[1] / "golden" / "trace.json"
 WHERE = GOLDEN.with_name("where.json")
 
 
+def golden(mode):
+    """The checksums of a mode that were committed."""
+    return json.loads(GOLDEN.read_text(encoding="utf-8"))[mode]
+
+
 def corrector_for(mode):
     """The corrector that runs the trace in that mode."""
     return Corrector(Sensor(*trace.SENSOR), **trace.LIMITS, **trace.MODES[mode])

@@ -6,10 +6,10 @@ import sys
 from pathlib import Path
 
 import pytest
+import textstat
+from markdown_it import MarkdownIt
 from packaging.requirements import Requirement
 from vulture import Vulture
-
-from .readability import LEAST_READING_EASE, MOST_WORDS_A_SENTENCE, pages, readability
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -120,23 +120,6 @@ def test_firmware_and_drivers_import_neither_each_other_nor_the_tools(graph):
             assert {other.partition(".")[0] for other in imported} <= {package}, name
 
 
-@pytest.mark.parametrize(
-    "back",
-    [
-        "from .one import f",
-        "def g():\n    from .one import f",
-        "if TYPE_CHECKING:\n    from .one import f",
-        "def g():\n    import zerorate.one",
-    ],
-)
-def test_a_circle_is_found_wherever_the_import_hides(tmp_path, back):
-    folder = tmp_path / "firmware" / "zerorate"
-    folder.mkdir(parents=True)
-    (folder / "one.py").write_text("from . import two\n")
-    (folder / "two.py").write_text(back + "\n")
-    assert circles(graph_of(tmp_path)) == {frozenset({"zerorate.one", "zerorate.two"})}
-
-
 CODE = (
     "firmware/zerorate",
     "drivers/zerorate_i2c",
@@ -226,6 +209,49 @@ def test_every_need_is_locked_in_a_version_that_satisfies_it(requirements, extra
         assert need.name in locked, f"`make lock` adds {need.name}"
         versions = [line.split("==")[1].split(" ")[0] for line in locked[need.name]]
         assert all(need.specifier.contains(version) for version in versions), need
+
+
+#: Beside those of docs.
+PAGES = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md")
+#: Tables and lists of names.
+_NO_PROSE = {"api.md", "glossary.md", "layout.md"}
+MOST_WORDS_A_SENTENCE = 16
+LEAST_READING_EASE = 55  # Flesch: 50 to 60 is "fairly difficult", 60 to 70 "plain English"
+
+_NOT_PROSE = ("heading", "th", "td")
+
+
+def pages(root):
+    """Every page that is read as prose, below the folder `root`."""
+    docs = sorted(p.relative_to(root).as_posix() for p in (root / "docs").glob("*.md"))
+    names = (page for page in docs if Path(page).name not in _NO_PROSE and "figures" not in page)
+    return [*PAGES, *names]
+
+
+def prose(markdown):
+    """The sentences of a page, one paragraph or list item a line.
+
+    Headings, tables, code blocks and pictures are left out. A piece of code in a sentence counts as
+    one short word. A full stop inside a word or a number is no end of a sentence.
+    """
+    lines, inside = [], ""
+    for token in MarkdownIt().enable("table").parse(markdown):
+        if token.type == "inline" and inside not in _NOT_PROSE:
+            lines.append("".join(map(_text, token.children)))
+        inside = token.type.removesuffix("_open") if token.nesting == 1 else ""
+    ended = (re.sub(r"(?<=\w)\.(?=\w)", "", line).rstrip(" :;,") for line in lines)
+    return "\n".join(line if line[-1] in ".!?)" else f"{line}." for line in ended if line)
+
+
+def _text(token):
+    """What a reader sees of a part of a line."""
+    return {"text": token.content, "code_inline": "code", "softbreak": " "}.get(token.type, "")
+
+
+def readability(markdown):
+    """(mean words a sentence, Flesch reading ease) of a page's prose."""
+    text = prose(markdown)
+    return textstat.words_per_sentence(text), textstat.flesch_reading_ease(text)
 
 
 def test_every_page_reads_easily(repository):

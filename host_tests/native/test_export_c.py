@@ -21,7 +21,7 @@ from zerorate_tools.model import read_model, write_model
 from zerorate_tools.model.files import sensor_for
 
 from ..firmware import trace
-from ..firmware.trace_on_host import checksums, corrector_for, frames
+from ..firmware.trace_on_host import checksums, corrector_for, frames, golden
 
 pytestmark = pytest.mark.skipif(not shutil.which("cc"), reason="no C compiler (cc) here")
 WARNINGS = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror"]
@@ -41,7 +41,7 @@ def test_the_test_program_says_that_the_state_is_equal(tmp_path, capsys):
     assert subprocess.run([program], check=True, capture_output=True).stdout.startswith(b"equal")
 
 
-def test_it_ends_the_golden_trace_in_the_golden_state(tmp_path, golden):
+def test_it_ends_the_golden_trace_in_the_golden_state(tmp_path):
     export_c(tmp_path, Sensor(*trace.SENSOR))
     library = tmp_path / "zerorate.so"
     subprocess.run(
@@ -55,7 +55,7 @@ def test_it_ends_the_golden_trace_in_the_golden_state(tmp_path, golden):
     for row, dt in zip(rows, dt_us.tolist()):
         made.zerorate_update(z, (ctypes.c_int32 * 7)(*row.tolist()), dt)
     state = array("i", z[: len(corrector.state)])
-    assert checksums(state.tobytes(), b"")["state"] == golden["default"]["state"]
+    assert checksums(state.tobytes(), b"")["state"] == golden("default")["state"]
 
 
 def test_a_model_may_be_named_by_its_readable_twin(tmp_path, matrix_model):

@@ -20,13 +20,13 @@ from zerorate.rest.estimators import reset
 from zerorate.rest.step import admit, consider, finish, step
 from zerorate_bench.native.machine_code import INLINED, UNROLLED
 from zerorate_bench.native.native_cost import Emulated, code_in
-from zerorate_bench.native.native_files import plain_kernels
+from zerorate_bench.native.native_files import plain_kernels, stale
 from zerorate_bench.native.parts import BURST, PARTS, answer_by, known_model
 from zerorate_tools.kernels.reading import Kernels
 from zerorate_tools.layout import EFFECTS, GRAVITY, MOTION, SETTINGS, SLOT, SOURCE, STATE, STILLNESS
 
 from ..firmware import motions, trace
-from ..firmware.trace_on_host import checksums, corrector_for, frames
+from ..firmware.trace_on_host import checksums, corrector_for, frames, golden
 
 ADMIT, FINISH, CONSIDER, RESET, COPY, CLEAR = (-0x40000000 + (n << 16) for n in (0, 1, 2, 3, 4, 0))
 #: What `mpy-cross -march` takes, and how far into a function of its own the code begins.
@@ -59,26 +59,26 @@ def test_what_is_compiled_for_speed_is_a_kernel(name):
 
 @processors
 @pytest.mark.parametrize("mode", sorted(trace.MODES))
-def test_a_whole_trace_ends_in_the_golden_state(machine_code, processor, mode, golden):
+def test_a_whole_trace_ends_in_the_golden_state(machine_code, processor, mode):
     run, corrector = machine_code("rest", processor), corrector_for(mode)
     rows, dt_us = frames(trace.UPDATES[mode])
     biases = array("i")
     for row, dt in zip(rows, dt_us.tolist()):
         run(corrector.state, corrector.settings, array("i", row.tobytes()), dt)
         biases.extend(corrector.state[STATE.OUT_Q8 : STATE.OUT_Q8 + 3])
-    assert checksums(corrector.state.tobytes(), biases.tobytes()) == golden[mode]
+    assert checksums(corrector.state.tobytes(), biases.tobytes()) == golden(mode)
 
 
 @pytest.mark.parametrize(("processor", "at_once"), [("thumb", 7), ("rv32", 64)])
 @pytest.mark.parametrize("mode", sorted(trace.MODES))
-def test_bursts_end_in_the_golden_state(machine_code, processor, mode, at_once, golden):
+def test_bursts_end_in_the_golden_state(machine_code, processor, mode, at_once):
     run, corrector = machine_code("rest", processor), corrector_for(mode)
     rows, dt_us = frames(trace.UPDATES[mode])
     rows = np.c_[dt_us, rows].astype(np.int32)
     for first in range(0, len(rows), at_once):
         burst = array("i", rows[first : first + at_once].tobytes())
         run(corrector.state, corrector.settings, burst, BURST + len(burst) // 8)
-    assert checksums(corrector.state.tobytes(), b"")["state"] == golden[mode]["state"]
+    assert checksums(corrector.state.tobytes(), b"")["state"] == golden(mode)["state"]
 
 
 @processors
@@ -260,3 +260,8 @@ def test_any_rest_refines_the_same(machine_code, processor, totals, temp, values
         run(s, c, native, 0)
         s[STATE.WINDOW_N] = 1
     assert native == plain
+
+
+def test_the_committed_machine_code_is_what_the_kernels_give_byte_for_byte(repository):
+    pytest.importorskip("ziglang")
+    assert stale(repository / "firmware" / "zerorate") == [], "make native"

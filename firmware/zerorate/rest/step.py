@@ -5,7 +5,7 @@
 #
 # Of all kernels: a bytecode frame of more than eleven words (parameters, locals, what an expression
 # holds) takes heap at every call. Only where none is left a parameter stands for a second thing,
-# and a remark that begins "eleven words" says for what (host_tests/runtimes/kernel_rules.py).
+# and a remark that begins "eleven words" says for what (host_tests/runtimes/test_kernel_rules.py).
 
 from ..arithmetic.fixed import root
 from .bias import curve_q8

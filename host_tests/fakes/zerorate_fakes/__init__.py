@@ -3,8 +3,7 @@
 Runs on CPython and MicroPython. Strict: what the data sheet does not document fails.
 """
 
-from .bus import FakeI2C
-from .clock import FakeClock
+from .bus import FakeClock, FakeI2C
 from .device import FakeMPU6050, UnknownRegister
 from .source import Physical
 
