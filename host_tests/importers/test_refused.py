@@ -119,6 +119,7 @@ LISTS = pd.DataFrame({"t_s": np.arange(300) / 100, "pulse": 70, "gyro": "[0.8, -
          "give --hz 50 .as the file says"),
         (rates("t_s gyro_x_rpm gyro_y_rpm gyro_z_rpm".split()), {}, "the unit 'rpm' .*dps one is"),
         (rates("t_s r.beta r.gamma r.alpha".split()), {}, "--map gx=r.beta:dps --map gy=r.gamma:d"),
+        (rates("t_s omega_x omega_y omega_z".split()), {}, "give --gyro-unit rad/s .or dps"),
         (rates("t_s p q r".split()), {}, "if these are rates: --map gx=p --map gy=q"),
         # a quaternion is none, and a phone's Sensor Logger writes radians
         (rates("t_s x y z w".split()), {}, "--map gx=COLUMN:UNIT.* COLUMN one of t_s, x"),

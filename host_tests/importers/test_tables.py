@@ -347,11 +347,14 @@ def test_the_time_is_found_among_columns(tmp_path, columns, mapping, step_us):
             "gyro_{}",
             "{}_rad_s",
             "twist.angular.{}",
+            "gyroscope sensor.values[{}]",
+            "raw_g{}",
         ),
     ],
 )
 def test_usual_names_and_units_of_rates_are_known(tmp_path, name):
     named = {"UncompGyro{}": "012", "imu1.wb[{}]": "012", "AngularVelocity_{}": "123"}
+    named["gyroscope sensor.values[{}]"] = "012"
     named |= dict.fromkeys(("{}_rate", "gyro_{}", "{}_rad_s"), ("roll", "pitch", "yaw"))
     axes = named.get(name, "xyz")
     frame = rates(["t_s", *map(name.format, axes)], 300)

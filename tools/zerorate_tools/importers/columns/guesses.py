@@ -33,6 +33,8 @@ _LONG_TIME = re.compile("min|hour|hr|day")
 _OTHER_TIME = re.compile(f"{_LONG_TIME.pattern}|frame|tick|count")
 _TOGETHER = 64
 _PER_HOUR = re.compile(r"(?:deg|°)\w*\s*(?:/|per)\s*h")
+#: Who writes the symbol of angular velocity means its SI unit.
+_OMEGA = re.compile("omega|w[xyz]$")
 #: Where no time is known; of 25 Hz or 400 Hz rates in their usual units still have a size.
 _ANY_HZ = 20.0
 #: Of such sizes in dps are counts of gyroscopes, and means of counts; and so is mrad/s.
@@ -363,8 +365,9 @@ def _likely(target: str, wanted: Mapping[str, Mapped], first: Mapping[str, np.nd
     counted = bool(len(values)) and are_whole(values)
     if target == TEMP:
         return "lsb" if counted else "degc"
+    omega = target in GYRO and not counted and _OMEGA.match(spelled(wanted[target].column))
     if not all(axis in wanted for axis in ACCEL):
-        return "dps" if target in GYRO else "m/s2"
+        return "rad/s" if omega else "dps" if target in GYRO else "m/s2"
     unit = wanted["ax"].unit or unit_in_name("ax", wanted["ax"].column)
     unit = unit or _by_gravity(wanted, first)[0]
     if target in ACCEL:
@@ -373,6 +376,7 @@ def _likely(target: str, wanted: Mapping[str, Mapped], first: Mapping[str, np.nd
         return unit or ("lsb" if counted else near)
     # those who keep to one system of units keep to it for both
     likely = {"m/s2": "rad/s", None: "lsb" if counted else "dps", "lsb": "lsb"}.get(unit, "dps")
+    likely = "rad/s" if omega else likely
     if unit == "mg" and spelled(wanted[target].column).endswith("gyro"):
         return "mrad/s"  # MAVLink's xacc and xgyro
     # one unit for the three, by the fastest

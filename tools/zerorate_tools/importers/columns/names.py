@@ -14,15 +14,15 @@ _CHIP = r"(?:(?:bm[agi]|i[ai]m|icm|lis|lsm|mpu)\d[a-z0-9]*?)?"
 _GYRO = re.compile(
     r"(?:.*(?:gyroscope|gyrorotation|g[iy]ro|gyr|angularvelocity|ang(?:le|ular)?rate|angl?vel|rot(?:ation)?rate|omega|angular)"
     rf"\d?{_CHIP}(?:uncalibrated|uncal|calibrated|corrected|unfilt|adc|raw|rad|data|rate|dps|dof|values?|v"
-    r"|static|noise){0,2}"
-    r"|(?:.*imu\d*)?(?:gy|[wg]|wb|pqr|absr|rate|dps))"
+    r"|static|noise|sensor){0,2}"
+    r"|(?:.*imu\d*|raw)?(?:gy|[wg]|wb|pqr|absr|rate|dps))"
     + f"{_AXIS}{_MADE}{_NUMBER}$|^{_AXIS}(?:gyroscope|gyro|gyr|rate){_MADE}$"
 )
 _ACCEL = re.compile(
     r"(?:.*(?:accelerometer|acceleration|accel|acce|accl|acc|acel|specificforce|gforce)"
     rf"\d?{_CHIP}(?:uncalibrated|uncal|calibrated|smooth|adc|raw|data|dof|ms2|m?g|values?|v|vector|ln|wr|static"
-    r"|noise|includinggravity){0,2}"
-    r"|(?:.*imu\d*)?(?:ac?|gf|fb?|abs))"
+    r"|noise|sensor|includinggravity){0,2}"
+    r"|(?:.*imu\d*|raw)?(?:ac?|gf|fb?|abs))"
     + f"{_AXIS}{_MADE}{_NUMBER}$|^{_AXIS}(?:accelerometer|accel|accl|acc){_MADE}$"
 )
 #: Whose axis stands before a part of a body, say: GyroX_left_leg.
