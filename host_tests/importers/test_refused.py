@@ -135,6 +135,15 @@ def test_a_table_that_cannot_be_imported_says_what_to_do(tmp_path, frame, how, s
     assert "\n" not in str(caught.value)
 
 
+def test_a_stepper_that_shakes_at_an_eighth_of_the_rate_is_no_eight_devices(tmp_path):
+    frame, at = table(4000), np.arange(4000)
+    frame["gx_dps"] += np.sin(2 * np.pi * 0.1263 * at) + np.sin(np.pi * 0.1263 * at)
+    assert not read(tmp_path, frame)[1].doubts
+    frame["gx_dps"] += 3.0 * np.sin(np.pi * at / 4)
+    with pytest.raises(BadRecording, match="rows of 8 devices take turns"):
+        read(tmp_path, frame)
+
+
 def test_a_limb_that_swings_is_pushed_along_itself(tmp_path):
     swung = SHAKEN.assign(az=SHAKEN.az - 9.5)
     assert read(tmp_path, swung, units={"accel": "g"})

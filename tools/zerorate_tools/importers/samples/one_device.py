@@ -19,6 +19,8 @@ _BLOCK = 120
 #: two devices, where a row nearly always tells whose it is.
 _APART = 1.5
 _GOES_ON = 0.95
+#: Blocks that levels stay for, and how alike they are then at least: the cosine between them.
+_LAGS, _ALIKE = 4, 0.5
 #: Of the largest reading, what the decomposition itself may be off.
 _ROUNDING, _TINY = 1e-9, 1e-300
 #: Samples that are compared: at either end, and before and after a change.
@@ -76,12 +78,39 @@ def levels_in_turn(stretches: list[np.ndarray]) -> int:
     apart = {n: float(np.median([_apart(block, n) for block in whole])) for n in counts}
     # twice as many tell no more, and half as many much less
     least = max(_APART, max(apart.values()) / 2)
-    return next((n for n in counts if apart[n] > least), 0)
+    return next((n for n in counts if apart[n] > least and _stay(stretches, n)), 0)
+
+
+def _stay(stretches: list[np.ndarray], devices: int) -> bool:
+    """Whether the levels of the rows of a cycle are the same from block to block: what shakes a
+    device at a fraction of its rate, as a stepper does, is no clock, and its phase wanders."""
+    alike: dict[int, list[float]] = {lag: [] for lag in range(1, _LAGS + 1)}
+    size = _BLOCK // devices * devices
+    for rows in (rows for rows in stretches if len(rows) >= 2 * size):
+        starts = range(0, len(rows) - size + 1, size)
+        blocks = (_levels(rows[at : at + size], devices)[0] for at in starts)
+        levels = np.array([block.ravel() for block in blocks])
+        for lag, found in alike.items():
+            one, other = levels[:-lag], levels[lag:]
+            lengths = np.sqrt((one**2).sum(axis=-1) * (other**2).sum(axis=-1))
+            found += [*((one * other).sum(axis=-1) / np.maximum(lengths, _TINY))]
+    return all(np.nanmedian(found or [1.0]) > _ALIKE for found in alike.values())
 
 
 def _apart(block: np.ndarray, devices: int) -> float:
-    """How far the levels of each row of a cycle are apart, in what its rows scatter about them: a
-    seasonal decomposition, whose moving mean holds every device alike and any steady change."""
+    """How far the levels of each row of a cycle are apart, in what its rows scatter about them."""
+    levels, scatter, cycles = _levels(block, devices)
+    between = levels.var(axis=0) - scatter / cycles
+    rounding = (_ROUNDING * np.abs(block).max(axis=0)) ** 2
+    return float(
+        np.sqrt((np.maximum(between - rounding, 0.0) / (scatter + rounding + _TINY)).sum())
+    )
+
+
+def _levels(block: np.ndarray, devices: int) -> tuple[np.ndarray, np.ndarray, int]:
+    """Levels of each row of a cycle, the square by which its rows scatter about them, and how many
+    cycles: a seasonal decomposition, whose moving mean holds every device alike and any steady
+    change."""
     ends = [0.5] if devices % 2 == 0 else []
     weights = np.array([*ends, *[1.0] * (devices - len(ends)), *ends]) / devices
     half = len(weights) // 2
@@ -90,12 +119,7 @@ def _apart(block: np.ndarray, devices: int) -> float:
     cycles = len(rest) // devices
     rest = rest[: cycles * devices].reshape(cycles, devices, -1)
     levels = rest.mean(axis=0)
-    scatter = ((rest - levels) ** 2).sum(axis=(0, 1)) / (devices * (cycles - 1))
-    between = levels.var(axis=0) - scatter / cycles
-    rounding = (_ROUNDING * np.abs(block).max(axis=0)) ** 2
-    return float(
-        np.sqrt((np.maximum(between - rounding, 0.0) / (scatter + rounding + _TINY)).sum())
-    )
+    return levels, ((rest - levels) ** 2).sum(axis=(0, 1)) / (devices * (cycles - 1)), cycles
 
 
 def refuse_change_of_unit(
