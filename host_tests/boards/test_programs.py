@@ -138,8 +138,8 @@ def test_after_each_command_the_program_runs_again_at_a_friendly_prompt(
     setup.write_text("from zerorate_i2c.board import setup\nimu = setup(scl=5, sda=4)\n")
     for command, words in (
         ("flash", []),
-        ("record", ["--out", str(out), "--seconds", "3", "--setup", str(setup)]),
-        ("watch", ["--for", "2", "--setup", str(setup)]),
+        ("record", ["--out", str(out), "--seconds", "1", "--setup", str(setup)]),
+        ("watch", ["--for", "1", "--setup", str(setup)]),
     ):
         assert main([command, pico.port, *words]) == 0
         console = Console(pico.port)

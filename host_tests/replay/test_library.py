@@ -122,14 +122,13 @@ def test_a_wheel_has_a_library_of_each_system_and_no_older_one(tmp_path, untried
     }
 
 
-@pytest.mark.parametrize(("machine", "number"), [("amd64", 0x8664), ("arm64", 0xAA64)])
-def test_a_library_for_windows_is_made_here_and_shows_what_python_calls(tmp_path, machine, number):
+def test_a_library_for_windows_is_made_here_and_shows_what_python_calls(tmp_path):
     text = library_module.text_of("sample.c", "rows.c")  # which no C library helps there
     made = tmp_path / "kernels.dll"
-    data = library_module.cross_compiled(text, ("win32", machine), made).read_bytes()
+    data = library_module.cross_compiled(text, ("win32", "arm64"), made).read_bytes()
     at = int.from_bytes(data[60:64], "little")
     assert (data[:2], data[at : at + 4]) == (b"MZ", b"PE\0\0")
-    assert int.from_bytes(data[at + 4 : at + 6], "little") == number
+    assert int.from_bytes(data[at + 4 : at + 6], "little") == 0xAA64
     assert b"\0zerorate_run\0" in data and b"begin_traversal" not in data
 
 

@@ -1,7 +1,6 @@
 """A recording comes back as it was written, in every format, up to the ends of every range."""
 
 import json
-import sys
 from pathlib import Path
 from threading import current_thread, main_thread
 
@@ -22,9 +21,6 @@ from zerorate_tools.recordings.checks import GAP, check_names
 from zerorate_tools.recordings.csv_format import read_header
 from zerorate_tools.recordings.scales import example_for, scales_from_text
 from zerorate_tools.recordings.text import rows_of
-
-if sys.platform == "linux":
-    pass
 
 SCALES = Scales("MPU-6050", 25.0, 131.0, 16384.0, 340.0, 36.53, {"latitude_deg": 48.1})
 FORMATS = ["run.parquet", "run.csv", "run.csv.gz"]
