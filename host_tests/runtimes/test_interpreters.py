@@ -255,17 +255,6 @@ def program(path, text):
     return str(path)
 
 
-@pytest.mark.parametrize(
-    ("said", "told"),
-    [("W: old\nE: gone", "E: gone"), ("first\nE:\n", "E:"), ("a\nb", "a"), ("", "no message")],
-)
-def test_what_a_program_fails_with_is_told_in_one_line(said, told, tmp_path):
-    failing = program(tmp_path / "x", f"echo '{said}' >&2\nexit 1\n")
-    with pytest.raises(MissingRuntime) as error:
-        unix_port._output_of([failing])
-    assert str(error.value) == f"{failing} failed: {told}"
-
-
 def test_a_missing_node_says_where_it_comes_from(own_cache, monkeypatch):
     monkeypatch.setenv("PATH", "")
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)

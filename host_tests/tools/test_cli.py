@@ -19,6 +19,8 @@ from zerorate_tools.installed import adding, beside
 from zerorate_tools.recordings import Scales, recording_writer
 from zerorate_tools.simulate import simulate_to_files
 
+from host_tests.fleet.conftest import run_here
+
 SCALES = Scales("X", 1.0, 1.0)
 
 
@@ -228,7 +230,10 @@ def sessions(tmp_path_factory):
         ("fleet {0} {1} --workers 1 --out {out}/fleet", "sessions"),
     ],
 )
-def test_json_is_one_document_on_standard_output(sessions, tmp_path, capsys, command, key):
+def test_json_is_one_document_on_standard_output(
+    sessions, tmp_path, monkeypatch, capsys, command, key
+):
+    run_here(monkeypatch)
     words = command.format(*sessions, out=tmp_path).split()
     assert main([*words, "--json"]) == 0
     assert json.loads(capsys.readouterr().out)[key]

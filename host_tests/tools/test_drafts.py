@@ -216,19 +216,6 @@ class TestSwitch:
         assert {draft.parent for draft in others} == {tmp_path / "b"}, "a kill would part them"
 
 
-def test_what_needs_one_rename_has_one(tmp_path, monkeypatch):
-    renames = []
-    sys.addaudithook(lambda event, args: event == "os.rename" and renames.append(str(args[1])))
-    with written_beside(tmp_path / "o"):
-        pass
-    with written_together(tmp_path / "new") as draft:
-        for name in ("a", "b"):
-            (draft / name).write_text("new")
-    with written_together(tmp_path / "new"):
-        pass  # nothing to put in place
-    assert [r for r in renames if str(tmp_path) in r] == [str(tmp_path / n) for n in ("o", "new")]
-
-
 def no_links(*arguments, **options):
     raise OSError(errno.EPERM, "no links here")
 

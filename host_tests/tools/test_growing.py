@@ -217,13 +217,3 @@ def test_a_command_names_it_where_the_recording_is_asked_for(tmp_path, killed, c
     assert main(["allan", str(tmp_path / "run.parquet")]) == 2
     said = f"no such file; {left} is there: zerorate record --recover {left}"
     assert said in capsys.readouterr().err
-
-
-def test_the_last_whole_row_is_looked_for_from_the_end_a_block_at_a_time(tmp_path, monkeypatch):
-    monkeypatch.setattr(growing, "_BLOCK", 8)
-    long = "1\n" + "2" * 30
-    for rows in ("", "1,2", "1,2\n", "1\n2\n3", long, long + "\n3" * 9, "\n" * 8, "1\n2222222"):
-        (tmp_path / "run").write_text(rows)
-        with open(tmp_path / "run", "rb", buffering=0) as file:
-            assert growing._end_of_last_row(file) == rows.rfind("\n") + 1
-            assert file.tell() <= max(0, rows.rfind("\n")) + 8  # no more is read than must be
