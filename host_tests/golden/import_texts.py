@@ -158,7 +158,7 @@ def checked():
         path = Path(folder, "in.txt")
         for _ in range(60):
             path.write_text(mostly(luck, "\n", "\r\n").join([*_checked(luck), ""]))
-            said.append(str(checked_lines.has_checked_lines(path)))
+            said.append(str(checked_lines.checked_lines(path) is not None))
             said.append(attempt(_read, checked_lines.checked_lines, path))
             said += checked_lines.checked_lines(path).mapping
     return {"checked": said}

@@ -6,9 +6,11 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from zerorate_i2c.settings import ACCEL_RANGES_G, GYRO_RANGES_DPS
+from zerorate_i2c.settings import ACCEL_RANGES_G, GYRO_RANGES_DPS, choose_divider, choose_filter
 
-from ..errors import ZerorateError
+from ..bounds import bytes_of, text_of
+from ..errors import InFile, ZerorateError
+from ..progress import progress
 from .learn import sources
 from .options import Arguments, above_zero, command, group, option, switch
 
@@ -89,8 +91,6 @@ def _recover(arguments: argparse.Namespace) -> None:
 
 def _record(arguments: argparse.Namespace) -> int:
     from ..boards.recording import record
-    from ..bounds import text_of
-    from ..progress import progress
     from ..recordings.growing import left_over
 
     for partial in left_over(arguments.out):
@@ -140,7 +140,7 @@ def _made(out: Path, result: Any) -> int:
     option("source SOURCE", "run.csv, /dev/ttyACM0 or /dev/i2c-1"),
     option("--for SECONDS", "stop after this time", above_zero, dest="seconds"),
     switch("--once", "read what is there, and stop"),
-    option("--every SECONDS", "time between two lines", above_zero),
+    option("--every SECONDS", "time between two lines", above_zero, dest="every_s"),
     switch("--plain", "print lines on a terminal too"),
     option("--model FILE", "an effect model to load", Path),
     *sources(),
@@ -155,21 +155,16 @@ def run_watch(arguments: argparse.Namespace) -> int:
     """Watch; 1 where no sample, or no line, ever came."""
     if arguments.own and (arguments.model or arguments.setup):
         raise ZerorateError("--own leaves the board's program as it is; drop --model and --setup")
-    from ..bounds import text_of
     from ..watch.screen import WatchOptions, check_picture, draw
     from ..watch.watching import watch
 
     if arguments.plot:
         check_picture(arguments.plot)
+    names = ("seconds", "once", "every_s", "plain", "model", "own")
     options = WatchOptions(
-        seconds=arguments.seconds,
-        once=arguments.once,
-        every_s=arguments.every,
-        plain=arguments.plain,
+        **{name: getattr(arguments, name) for name in names},
         settings={"motion": arguments.motion, "gravity": arguments.gravity},
-        model=arguments.model,
         setup=text_of(arguments.setup, "name MicroPython source") if arguments.setup else "",
-        own=arguments.own,
     )
     live = watch(arguments.source, options)
     if live and arguments.plot:
@@ -211,7 +206,6 @@ def run_run(arguments: argparse.Namespace) -> None:
     from zerorate_i2c.linux import LinuxI2C
     from zerorate_i2c.mpu6050 import MPU6050
 
-    from ..errors import InFile, ZerorateError
     from ..host import store_file
     from ..service import Datagrams, FakeBus, Lines, Metrics, Service, Sink, System, UnixSocket
 
@@ -271,7 +265,6 @@ def _require_settings(options: dict[str, Any]) -> None:
     """Raise ZerorateError for a rate and a filter that no part can take, or not the part named:
     before the bus is waited for."""
     from zerorate_i2c.parts import MPU6050_KIND, MPU6500_KIND, part_by_name
-    from zerorate_i2c.settings import choose_divider, choose_filter
 
     odr_hz, refused = options.get("odr_hz", 100), None
     try:
@@ -290,7 +283,6 @@ def _require_settings(options: dict[str, Any]) -> None:
 
 def _model_bytes(path: Path) -> bytes:
     """The bytes of model.bin, which need no library; those of its readable twin need tools."""
-    from ..bounds import bytes_of
 
     if path.suffix != ".json":
         return bytes_of(path, "name a model.bin or model.json")

@@ -8,6 +8,8 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+from ..errors import CannotFetch, MissingRuntime, ZerorateError
+from ..progress import progress, waiting
 from .options import argument, command, option, switch, with_actions
 
 #: The interpreter that is fetched where nobody names one.
@@ -32,8 +34,6 @@ def run_demo(arguments: argparse.Namespace) -> int | None:
 
     What needs no network takes the place of what cannot be fetched, and that is said.
     """
-    from ..errors import CannotFetch, MissingRuntime, ZerorateError
-
     if arguments.real and arguments.out:
         raise ZerorateError("--real only prints: leave --out away, or redirect what it prints")
     arguments.out = arguments.out or Path("zerorate-demo")
@@ -58,8 +58,6 @@ def run_demo(arguments: argparse.Namespace) -> int | None:
 
 def get_ready(runtime: str) -> None:
     """Fetch the interpreter where it is not there yet. Raises MissingRuntime."""
-    from ..errors import MissingRuntime
-    from ..progress import waiting
     from ..runtimes import NAMES, fetch, find
 
     try:
@@ -80,7 +78,6 @@ def run_job(arguments: argparse.Namespace) -> int:
     from ..compare.show import write_page
     from ..demo import story
     from ..demo.picture import draw_job
-    from ..progress import progress
 
     folder, runtime = arguments.out, arguments.runtime
     with progress("simulating a device"):
@@ -108,7 +105,6 @@ def run_job(arguments: argparse.Namespace) -> int:
 def run_real(arguments: argparse.Namespace) -> None:
     from ..demo import story
     from ..demo.broad import broad_trial, real
-    from ..progress import progress, waiting
 
     with waiting("fetching a trial of BROAD"):
         trial = broad_trial()
@@ -147,7 +143,6 @@ with_actions("runtimes", "fetch and list the MicroPython interpreters")
     argument("names", nargs="+", choices=_GETTABLE, metavar="NAME"),
 )
 def get(arguments: argparse.Namespace) -> int:
-    from zerorate_tools.errors import MissingRuntime
     from zerorate_tools.runtimes import fetch
 
     missing = []
@@ -162,8 +157,6 @@ def get(arguments: argparse.Namespace) -> int:
 
 
 def _fetch_emulator() -> None:
-    from zerorate_tools.errors import MissingRuntime
-
     try:
         from zerorate_bench.boards.pico import fetch_rp2040
     except ModuleNotFoundError:
@@ -173,7 +166,6 @@ def _fetch_emulator() -> None:
 
 @command("runtimes list", "list those in the cache, and how to get the others")
 def list_all(arguments: argparse.Namespace) -> None:
-    from zerorate_tools.errors import MissingRuntime
     from zerorate_tools.runtimes import NAMES, find
 
     for name in (*NAMES, "x64"):
@@ -209,7 +201,5 @@ def _benches(parser: argparse.ArgumentParser) -> None:
     description="Measure the figures on the pages. `--quick` is a short run.",
 )
 def _refuse(arguments: argparse.Namespace) -> None:
-    from ..errors import ZerorateError
-
     do = "unpack the source distribution and run `pip install -e '.[tools,bench]'` there"
     raise ZerorateError(f"the wheel has no benchmarks; {do}")

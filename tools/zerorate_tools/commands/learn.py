@@ -3,6 +3,7 @@
 import argparse
 from pathlib import Path
 
+from ..progress import progress
 from .options import (
     JSON,
     Arguments,
@@ -58,7 +59,6 @@ def sources(default: str = "yes") -> tuple[Arguments, Arguments]:
     "source and its one sigma.",
 )
 def run_replay(arguments: argparse.Namespace) -> None:
-    from ..progress import progress
     from ..recordings import open_recording
     from ..replay import replay
 
@@ -107,7 +107,6 @@ def _shares(counts: dict[str, int], total: int) -> str:
 def run_close(arguments: argparse.Namespace) -> None:
     from ..closing import close, motion_in_words
     from ..loop.report.in_words import in_words
-    from ..progress import progress
     from ..report.sentences import headline, why_both
 
     a = arguments
@@ -138,7 +137,6 @@ def run_compare(arguments: argparse.Namespace) -> None:
     """Print the headline and the table, and what the matrix would win; write the page."""
     from ..compare import TooFewRests, compare, matrix_of
     from ..compare.show import NO_RESTS, in_motion, table, write_page
-    from ..progress import progress
     from ..recordings.atomic import check_apart
 
     check_apart([arguments.out], arguments.logs)
@@ -240,7 +238,6 @@ def run_fleet(arguments: argparse.Namespace) -> int:
     """Run the fleet and print what came of it; 1 where no device could be used."""
     from ..fleet import devices_of, fleet
     from ..fleet.fleet_in_words import in_words
-    from ..progress import progress
 
     out = arguments.out
     devices = devices_of(arguments.recordings, arguments.device_from, without=out)

@@ -4,6 +4,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from ..progress import progress
 from .options import JSON, above_zero, argument, command, finite, option, print_json, switch
 
 
@@ -48,7 +49,6 @@ def _row(text: str) -> int:
     description="Make recordings of a device described in TOML or YAML, or of a bundled one.",
 )
 def run_simulate(arguments: argparse.Namespace) -> None:
-    from ..progress import progress
     from ..simulate import bundled_names, load_description, reference, simulate_to_files
 
     if arguments.list or arguments.entries:
@@ -122,7 +122,6 @@ _CHOSEN = "scale to write (default: chosen from the data)"
 )
 def run_import(arguments: argparse.Namespace) -> None:
     from ..importers import Options, import_recording, import_together
-    from ..progress import progress
     from ..recordings.writing import is_recording_name
 
     known = {k: v for k, v in vars(arguments).items() if k in Options.__dataclass_fields__}

@@ -17,7 +17,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from ..errors import printable
+from ..errors import ZerorateError, printable
 from ..loop.read.blocks import session_of
 from ..loop.read.sessions import Session
 from ..loop.read.ticks import read_ticks
@@ -107,8 +107,6 @@ def still_session(path: str) -> Session:
 
 def one_line(error: BaseException) -> str:
     """An exception in a line; those not raised on purpose with their kind."""
-    from ..errors import ZerorateError
-
     text = " ".join(str(error).split())
     return text if isinstance(error, ZerorateError) else f"{type(error).__name__}: {text}"
 

@@ -87,8 +87,10 @@ def curve_of(sessions: Sequence[Session]) -> Curve | None:
         covariance[:, 0, 0] += fitted[:number].var(axis=0, ddof=1) / number
     information = np.linalg.inv(covariance)
     score = np.einsum("aij,ja->ai", information, means @ fitted)
-    low, high = _span(sessions, warm)
-    return Curve(information, score, low, high, len(rates))
+    degc = warm / PER_DEGC + CENTRE_DEGC
+    warmed = all("temp" in s.sources for s in sessions)
+    low, high = (degc.min(), degc.max()) if warmed else (np.nan, np.nan)
+    return Curve(information, score, float(low), float(high), len(rates))
 
 
 def _stacked(sessions: Sequence[Session]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -116,13 +118,6 @@ def _variance(left: np.ndarray, power_on: np.ndarray, fitted: int) -> np.ndarray
     correlation = product / np.maximum((left**2).sum(axis=0), 1e-30)
     alike = np.clip(correlation + (1 + 3 * correlation + fitted) / len(left), 0, _MOST_CORRELATION)
     return variance * (1 + alike) / (1 - alike)
-
-
-def _span(sessions: Sequence[Session], warm: np.ndarray) -> tuple[float, float]:
-    if not all("temp" in s.sources for s in sessions):
-        return float("nan"), float("nan")
-    degc = warm / PER_DEGC + CENTRE_DEGC
-    return float(degc.min()), float(degc.max())
 
 
 _MOST_STEPS = 500

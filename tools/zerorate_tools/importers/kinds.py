@@ -9,7 +9,7 @@ from pathlib import Path
 from ..errors import BadRecording
 from ..recordings.text import head
 from .tables.archive import archive, folder_of_tables, tables_of_sensors, with_axes
-from .tables.checked_lines import checked_lines, has_checked_lines
+from .tables.checked_lines import checked_lines
 from .tables.delimited import delimited
 from .tables.table import Table
 
@@ -68,10 +68,8 @@ def table_of(path: Path, instance: int, advance: Callable[[float], None]) -> Ite
             else:
                 with table_of(unpacked, instance, advance) as table:
                     yield table
-    elif has_checked_lines(path):
-        yield checked_lines(path, advance)
     else:
-        yield delimited(path, advance)
+        yield checked_lines(path, advance) or delimited(path, advance)
 
 
 @contextmanager

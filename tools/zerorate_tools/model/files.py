@@ -36,15 +36,12 @@ def to_json(model: Model) -> str:
         "binding": asdict(model.binding),
         "tick_us": model.tick_us,
         "inputs": [asdict(i) for i in model.inputs],
-        "slots": [_slot_values(s) for s in model.slots],
+        "slots": [
+            {"effect": s.effect, **s.term.to_dict(), "coefficient_dps": list(s.coefficient_dps)}
+            for s in model.slots
+        ],
     }
     return json.dumps(values, indent=2, allow_nan=False) + "\n"
-
-
-def _slot_values(slot: Slot) -> dict[str, Any]:
-    values = {"effect": slot.effect, **slot.term.to_dict()}
-    values["coefficient_dps"] = list(slot.coefficient_dps)
-    return values
 
 
 def from_json(text: str | bytes, path: str | PathLike[str] = "model.json") -> Model:

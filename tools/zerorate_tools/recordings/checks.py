@@ -40,6 +40,12 @@ def check_names(names: list[str], path: Path) -> None:
         raise BadRecording(path, f"of ax ay az only {have} is there", do="give all three or none")
 
 
+def arrow_schema(names: list[str], path: Path) -> pa.Schema:
+    """Of columns to be written. Raises BadRecording as `check_names`."""
+    check_names(names, path)
+    return pa.schema([(name, pa.int64() if name == TIME else pa.int32()) for name in names])
+
+
 def arrow_batch(columns: Mapping[str, Any], schema: pa.Schema) -> pa.RecordBatch:
     """Equally long columns to be written: where an extra channel is GAP it has no value."""
     gaps = {name: np.asarray(columns[name]) == GAP for name in schema.names if _is_extra(name)}

@@ -17,8 +17,7 @@ import pyarrow.csv
 
 from ..bounds import bytes_of
 from ..errors import BadRecording
-from .checks import arrow_batch, check_names
-from .recording import TIME
+from .checks import arrow_batch, arrow_schema
 from .scales import Scales, example_for, scales_from_text
 from .text import head, line_blocks, rows_of
 
@@ -127,9 +126,7 @@ class CsvWriter:
     """Appends batches to a CSV; the names come with the first batch."""
 
     def __init__(self, path: Path, names: list[str]) -> None:
-        check_names(names, path)
-        types = [(name, pa.int64() if name == TIME else pa.int32()) for name in names]
-        self._schema = pa.schema(types)
+        self._schema = arrow_schema(names, path)
         options = pyarrow.csv.WriteOptions(include_header=False, quoting_style="none")
         compression = "gzip" if path.name.endswith(".gz") else None
         self._file = pa.output_stream(str(path), compression=compression)

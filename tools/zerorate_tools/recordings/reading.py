@@ -1,11 +1,12 @@
 """Recordings read whole, or in batches without ever holding the whole."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from functools import partial
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import pyarrow as pa
 
 from ..errors import BadRecording, refuse_odd_name
 from . import csv_format, parquet_format
@@ -15,9 +16,6 @@ from .drafts import settle
 from .guarded import read_in_safety
 from .recording import Columns, Recording, in_order
 from .scales import Scales
-
-if TYPE_CHECKING:
-    import pyarrow.parquet as pq
 
 _MOST_BYTES = 400_000_000
 
@@ -33,16 +31,16 @@ class OpenRecording:
         self.name = recording_name(self.path)
         self.n_samples: int | None = None
         self._keep_gaps = keep_gaps
-        self._parquet: pq.ParquetFile | None = None
         self._read_header()
 
     scales: Scales
     column_names: list[str]
+    _batches: Callable[[int], Iterator[pa.RecordBatch]]
 
     def batches(self, rows: int = 65536) -> Iterator[Columns]:
         """Yield dicts of int arrays, each at most `rows` long. Raises BadRecording."""
         checker = BatchChecker(self.path, self._keep_gaps)
-        for batch in self._arrow_batches(rows):
+        for batch in self._batches(rows):
             for start in range(0, batch.num_rows, rows):
                 yield checker.columns(batch.slice(start, rows))
         checker.finish()
@@ -54,25 +52,22 @@ class OpenRecording:
             what = "is a folder" if self.path.is_dir() else "no such file"
             raise BadRecording(self.path, what, do=_instead_of(self.path))
         if self.path.name.endswith(csv_format.SUFFIXES):
-            self._header = csv_format.read_header(self.path)
-            self.column_names = list(self._header.names)
+            header = csv_format.read_header(self.path)
+            self.column_names = list(header.names)
             check_names(self.column_names, self.path)
             self.scales = csv_format.read_scales(self.path, self.column_names)
+            self._batches = lambda rows: csv_format.batches(self.path, header)
         elif self.path.name.endswith(parquet_format.SUFFIXES):
             read_in_safety(self.path)
-            file = self._parquet = parquet_format.open_file(self.path)
+            file = parquet_format.open_file(self.path)
             self.column_names = list(file.schema_arrow.names)
             check_names(self.column_names, self.path)
             self.scales = parquet_format.read_scales(file, self.path)
             self.n_samples = file.metadata.num_rows
+            self._batches = partial(parquet_format.batches, file, self.path)
         else:
             do = f"turn it into a recording: zerorate import {self.path} --out imported.parquet"
             raise BadRecording(self.path, "neither .csv, .csv.gz nor .parquet", do=do)
-
-    def _arrow_batches(self, rows: int) -> Iterator[Any]:
-        if self._parquet is not None:
-            return parquet_format.batches(self._parquet, self.path, rows)
-        return csv_format.batches(self.path, self._header)
 
 
 def _instead_of(path: Path) -> str:

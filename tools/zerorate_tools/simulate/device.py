@@ -208,17 +208,14 @@ def white_dps(described: Description, world: World, seed: int) -> np.ndarray:
     sensor, given, n = described.sensor, described.noise, len(world.t_s)
     louder = described.sessions[world.number - 1].noise_scale
     rng = stream(seed, world.number, "white")
-    white = rng.standard_normal((n, 3)) * (_white_rms_dps(sensor) * louder)
+    rms_dps = sensor.gyro_noise_dps * averaging(sensor)
+    if sensor.gyro_noise_dps_rt_hz is not None:
+        rms_dps = sensor.gyro_noise_dps_rt_hz * np.sqrt(sensor.odr_hz / 2)
+    white = rng.standard_normal((n, 3)) * (rms_dps * louder)
     if given.outlier_dps and given.outlier_per_hour:
         far = stream(seed, world.number, "outliers")
         white += outliers(far, n, world.dt_s, given.outlier_dps, given.outlier_per_hour)
     return white
-
-
-def _white_rms_dps(sensor: Sensor) -> float:
-    if sensor.gyro_noise_dps_rt_hz is not None:
-        return sensor.gyro_noise_dps_rt_hz * np.sqrt(sensor.odr_hz / 2)
-    return sensor.gyro_noise_dps * averaging(sensor)
 
 
 def averaging(sensor: Sensor) -> float:

@@ -17,7 +17,7 @@ from ..recordings import Scales, csv_format, open_recording
 from ..recordings.checks import check_names
 from ..recordings.csv_format import unfinished_of
 from ..recordings.recording import Columns
-from .live import Live
+from .live import Live, watch_own
 from .screen import Screen, Shown, WatchOptions, screen
 
 _MOST_BYTES = 1_048_576
@@ -188,8 +188,6 @@ def watch(source: str, options: WatchOptions | None = None) -> Shown | None:
     """
     options = options or WatchOptions()
     if options.own:
-        from .live import watch_own
-
         return watch_own(source, options)
     if is_device(source):
         return watch_board(source, options)

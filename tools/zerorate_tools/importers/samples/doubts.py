@@ -41,6 +41,8 @@ _LOST = 0.05
 _COUNTS = 0.5
 #: A tenth of what a channel does may be lost by rounding.
 _MOST_ROUNDED = 0.1
+#: (3, n) rates in dps, (3, n) force and (n,) seconds; NaN in rows of the other.
+_Turns = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 def doubts(found: Gathered, plan: Plan, table: Table, scales: Scales, path: Path) -> list[str]:
@@ -48,10 +50,13 @@ def doubts(found: Gathered, plan: Plan, table: Table, scales: Scales, path: Path
     _refuse_gravity(found.looked_at, plan, scales, path)
     _refuse_pace(found, plan, path)
     _refuse_coarse_channels(found.looked_at, plan, path)
-    times = _gravity_turns_times(found.looked_at, plan, scales)
+    turns = _turns(found.looked_at, plan, scales)
+    of_units = None if plan.by_format else turns
+    times = turning.dps_of_one(*of_units) if of_units else None
     if times is None:
-        out = _of_rates(found, plan, path) or _of_standing(found.looked_at, plan, scales, path)
-        out += _of_axes(found.looked_at, plan, scales)
+        out = _of_rates(found, plan, path)
+        out = out or (_of_standing(of_units, plan, path) if of_units else [])
+        out += _of_axes(turns, plan) if turns else []
     else:
         out = _of_turning(times, found.counted, plan, scales, path)
     out += _of_temperature(found.looked_at, plan)
@@ -206,17 +211,10 @@ def _of_unit(said: str, meant: str, plan: Plan, path: Path) -> list[str]:
     raise BadRecording(path, said, do=do)
 
 
-def _gravity_turns_times(
-    seen: dict[str, np.ndarray], plan: Plan, scales: Scales
-) -> turning.Size | None:
-    """How much faster gravity turns than the rates say; None where it does not tell."""
-    if plan.by_format or "ax" not in seen:
+def _turns(seen: Columns, plan: Plan, scales: Scales) -> _Turns | None:
+    """None where there is no force."""
+    if "ax" not in seen:
         return None
-    return turning.dps_of_one(*_turns(seen, plan, scales))
-
-
-def _turns(seen: Columns, plan: Plan, scales: Scales) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """(3, n) rates in dps, (3, n) force and (n,) seconds; NaN in rows of the other."""
     rates, force = (np.array([seen[name] for name in axes]) for axes in (GYRO, ACCEL))
     rates /= scales.gyro_lsb_per_dps if "gyro" in plan.raw else 1.0
     t_us = seen[TIME]
@@ -227,11 +225,8 @@ def _turns(seen: Columns, plan: Plan, scales: Scales) -> tuple[np.ndarray, np.nd
     return rates, force, t_us * 1e-6
 
 
-def _of_axes(seen: dict[str, np.ndarray], plan: Plan, scales: Scales) -> list[str]:
+def _of_axes(turns: _Turns, plan: Plan) -> list[str]:
     """Rates that turn gravity as it is seen to turn if their axes are taken in another way."""
-    if "ax" not in seen:
-        return []
-    turns = _turns(seen, plan, scales)
     axes = turning.axes_of(*turns)
     if axes is None and turning.turns_otherwise(*turns):
         columns = ", ".join(plan.wanted[axis].column for axis in GYRO)
@@ -264,11 +259,9 @@ def _of_turning(
     return _of_unit(said, meant, plan, path)
 
 
-def _of_standing(seen: Columns, plan: Plan, scales: Scales, path: Path) -> list[str]:
+def _of_standing(turns: _Turns, plan: Plan, path: Path) -> list[str]:
     """Rates that would turn gravity, which stays where it is."""
-    if plan.by_format or "ax" not in seen:
-        return []
-    if not turning.turn_too_far(*_turns(seen, plan, scales)):
+    if not turning.turn_too_far(*turns):
         return []
     said = "gravity stays where these rates would turn it"
     if "gyro" in plan.raw:

@@ -20,19 +20,16 @@ _KNOWN = {
 }
 
 
-def has_checked_lines(path: Path) -> bool:
-    """Whether the first line is such a one."""
-    line = head(path, _LONGEST_LINE)[0].split(b"\n")[0].strip()
-    return line.startswith(b"$") and line[-3:-2] == b"*"
-
-
-def checked_lines(path: Path, advance: Callable[[float], None] = lambda n: None) -> Table:
-    """Columns are called 1, 2, 3, ... after the name; lines of other names are left out.
+def checked_lines(path: Path, advance: Callable[[float], None] = lambda n: None) -> Table | None:
+    """None where the first line is no such one. Columns are called 1, 2, 3, ... after the name;
+    lines of other names are left out.
 
     Lines that fail their checksum are dropped and counted, and keep their place. Raises
     BadRecording.
     """
     first = head(path, _LONGEST_LINE)[0].split(b"\n")[0].strip()
+    if not first.startswith(b"$") or first[-3:-2] != b"*":
+        return None
     kind, *cells = first[1:-3].split(b",")
     names = [str(number) for number in range(1, len(cells) + 1)]
 
