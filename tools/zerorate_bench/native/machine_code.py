@@ -22,7 +22,7 @@ from zerorate_bench.native.parts import PARTS
 
 _COMMON = (
     "-ffreestanding -fno-jump-tables -fwrapv -fno-sanitize=undefined -fno-builtin "
-    "-ffunction-sections -nostdlib -Wl,--gc-sections "
+    "-ffunction-sections "
     # a loop that subtracts stays one, for there is no division to make of it
     "-mllvm -replexitval=never"
 ).split()
@@ -137,7 +137,9 @@ def machine_code(kernels: Kernels, part: str, processor: str, fast: bool = False
     text += _ENTRY.format(body=what.body)
     with tempfile.TemporaryDirectory(prefix="zerorate-native-") as folder:
         aims = ("-O2",) if fast else how.aims
-        codes = [_linked(Path(folder), text, how, base, aims) for base in (0, 0x4000)]
+        (Path(folder) / "part.c").write_text(text, encoding="utf-8")
+        _zig(Path(folder), how, *aims, "-c", "part.c", "-o", "part.o")
+        codes = [_linked(Path(folder), how, base) for base in (0, 0x4000)]
     if codes[0] != codes[1]:
         raise ZerorateError(f"the code of {part} for {processor} holds an absolute address")
     if found := [*problems(codes[0], processor)]:
@@ -155,19 +157,21 @@ def _hinted(text: str, small: bool) -> str:
     return _SELDOM.sub("static __attribute__((minsize)) ", text) if small else text
 
 
-def _linked(folder: Path, text: str, how: Processor, base: int, aims: tuple[str, ...]) -> bytes:
-    (folder / "part.c").write_text(text, encoding="utf-8")
+def _linked(folder: Path, how: Processor, base: int) -> bytes:
     (folder / "part.ld").write_text(_SECTIONS.format(base=base), encoding="utf-8")
-    flags = [*aims, *_COMMON, *how.flags, "-target", how.target, "-Wl,-T,part.ld"]
-    zig = zig_cc("machine code is made by ziglang: pip install 'zerorate[bench]'")
-    command = [*zig, *flags, "part.c", "-o", "part.elf"]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
-    if done.returncode:
-        raise ZerorateError(f"the kernels do not compile for {how.target}: {done.stderr[:400]}")
+    _zig(folder, how, "-nostdlib", "-Wl,--gc-sections,-T,part.ld", "part.o", "-o", "part.elf")
     elf = (folder / "part.elf").read_bytes()
     heads, size = struct.unpack_from("<I10xH", elf, 32)
     start, length = struct.unpack_from("<2I", elf, heads + size + 16)  # of its first section
     return elf[start : start + length]
+
+
+def _zig(folder: Path, how: Processor, *words: str) -> None:
+    zig = zig_cc("machine code is made by ziglang: pip install 'zerorate[bench]'")
+    command = [*zig, *_COMMON, *how.flags, "-target", how.target, *words]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
+    if done.returncode:
+        raise ZerorateError(f"the kernels do not compile for {how.target}: {done.stderr[:400]}")
 
 
 def problems(code: bytes, processor: str) -> Iterator[str]:
