@@ -62,7 +62,7 @@ attacks: $(VENV)/.dev  ## every attack of docs/faults.md, until one succeeds
 	$(BIN)/python -m host_tests.boards.day
 
 layout: $(VENV)/.dev  ## write the constants of tools/zerorate_tools/layout where they are used
-	$(BIN)/python -m host_tests.layout
+	$(BIN)/python -m host_tests.layout.page
 
 native: layout  ## write firmware/zerorate/native from the kernels
 	$(BIN)/python -m zerorate_bench.native.native_files

@@ -4,6 +4,7 @@ import ast
 import io
 import re
 import tokenize
+from pathlib import Path
 
 from zerorate.settings import DEFAULTS, LEAST, MOST, OF_THE_DOCUMENT
 from zerorate_tools import layout
@@ -229,3 +230,16 @@ def words_made(source):
                 for name in names:
                     found.setdefault(name, []).append(target.slice.id[1:])
     return found
+
+
+def main(repository):
+    """Write the constants where they are used, docs/layout.md and settings.md."""
+    for path in files(repository):
+        path.write_text(refreshed(path), encoding="utf-8")
+    docs = repository / "docs"
+    (docs / "layout.md").write_text(page(), encoding="utf-8")
+    (docs / "settings.md").write_text(settings_page(repository), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main(Path(__file__).resolve().parents[2])
