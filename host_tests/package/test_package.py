@@ -21,6 +21,7 @@ from zerorate_tools.model.term import Term
 from zerorate_tools.recordings import Recording, Scales, write_recording
 
 from host_tests.docs.outputs import DEMO, demo_shown, same_but_for_rounding
+from project_urls import public_address
 
 PACKAGES = {
     "zerorate": "firmware",
@@ -250,22 +251,6 @@ def urls(folder):
     return json.loads(hatchling(folder, "metadata")).get("urls", {})
 
 
-@pytest.fixture
-def cloned(repository, tmp_path):
-    """cloned(remote) -> a checkout whose origin is that."""
-
-    def make(remote):
-        folder = tmp_path / "checkout"
-        (folder / VERSION).parent.mkdir(parents=True)
-        for name in (*NEEDED, VERSION):
-            shutil.copy(repository / name, folder / name)
-        for words in (["init", "-q"], ["remote", "add", "origin", remote]):
-            subprocess.run(["git", *words], cwd=folder, check=True)
-        return folder
-
-    return make
-
-
 @pytest.mark.parametrize(
     "remote",
     [
@@ -277,24 +262,29 @@ def cloned(repository, tmp_path):
         "ssh://git@forge.example:2222/team/zerorate.git",
     ],
 )
-def test_urls_are_of_the_origin_and_tell_no_password(cloned, remote):
-    shown = urls(cloned(remote))
-    assert shown["Homepage"] == HTTPS and shown["Issues"] == f"{HTTPS}/issues"
-    assert all(url.startswith(HTTPS) for url in shown.values())
-    assert {"Changelog", "Documentation"} <= set(shown)
+def test_the_page_is_that_of_the_origin_and_tells_no_password(remote):
+    assert public_address(remote) == HTTPS
 
 
 @pytest.mark.parametrize(
     "remote", ["/home/me/zerorate", "../zerorate", "file:///srv/zerorate", "https://localhost/x"]
 )
-def test_a_place_that_nobody_else_reaches_gives_none(cloned, remote):
-    assert urls(cloned(remote)) == {}
+def test_a_place_that_nobody_else_reaches_is_none(remote):
+    assert public_address(remote) is None
 
 
-def test_an_sdist_keeps_the_urls_for_the_wheel_built_from_it(cloned, tmp_path):
-    checkout = cloned(HTTPS)
+def test_an_sdist_keeps_the_urls_of_its_checkout_for_the_wheel_built_from_it(repository, tmp_path):
+    checkout = tmp_path / "checkout"
+    (checkout / VERSION).parent.mkdir(parents=True)
+    for name in (*NEEDED, VERSION):
+        shutil.copy(repository / name, checkout / name)
+    for words in (["init", "-q"], ["remote", "add", "origin", HTTPS]):
+        subprocess.run(["git", *words], cwd=checkout, check=True)
     hatchling(checkout, "build", "-t", "sdist", "-d", str(tmp_path))
     (sdist,) = tmp_path.glob("*.tar.gz")
     shutil.unpack_archive(sdist, tmp_path / "unpacked")
     (unpacked,) = (tmp_path / "unpacked").iterdir()
-    assert urls(unpacked) == urls(checkout) != {}
+    shown = urls(checkout)
+    assert urls(unpacked) == shown
+    assert shown["Homepage"] == HTTPS and shown["Issues"] == f"{HTTPS}/issues"
+    assert {"Changelog", "Documentation"} <= set(shown)
