@@ -8,7 +8,7 @@ import pytest
 from zerorate_tools.loop.motion import by_windows, scales_and_timing
 from zerorate_tools.loop.motion.clock import evenly
 from zerorate_tools.loop.motion.device import DifferentDevices, Shown, check_one_device
-from zerorate_tools.loop.motion.heading import heading_lost
+from zerorate_tools.loop.motion.heading import heading_lost, tells_worse
 from zerorate_tools.loop.motion.moving import Moving, _attitude_by, check_axes, moving_of
 from zerorate_tools.loop.motion.scales_and_timing import InMotion
 from zerorate_tools.loop.read.gate import CannotClose
@@ -144,6 +144,9 @@ def test_heading_is_told_where_no_window_sees_the_attitude_throughout():
     one = Moving("x", rate, none, at_s, every, ~every, np.zeros(3), np.zeros((0, 4)), given)
     before, after = heading_lost([(one, np.diag([0.0, 0.0, 0.01]))])
     assert before == pytest.approx(0.0, abs=1e-6) and 0.01 < after
+    alone = one.part(slice(1800)), np.diag([0.0, 0.0, 0.01])
+    assert not tells_worse([alone])  # half a minute that is off may be so by its bias
+    assert tells_worse([alone, alone]) and heading_lost([alone]) is not None
 
 
 def test_axes_that_gravity_contradicts_are_refused_by_name(tmp_path):

@@ -9,7 +9,7 @@ from scipy.stats import chi2
 
 from .columns import MATRIX
 from .device import LEVEL, Shown, check_one_device, device_of, groups
-from .heading import heading_lost
+from .heading import heading_lost, tells_worse
 from .matrix import FOLDS, Fitted, again, beside, by_recording, fit, of_what_shows_more
 from .moving import Moving, check_axes
 
@@ -140,9 +140,11 @@ def by_windows(train: list[Moving], holdout: list[Moving]) -> RateScale | None:
 
 def _judged_by_heading(shown: RateScale, train: list[Moving], holdout: list[Moving]) -> RateScale:
     """With what the heading gains in what was left out, and in what was fitted."""
-    heading = heading_lost(list(_left_out(shown, train, holdout)))
-    fitted = heading_lost([(m, shown.deployed) for m in train])
-    told = [lost for lost in (heading, fitted) if lost is not None]
+    left_out = list(_left_out(shown, train, holdout))
+    fitted = [(m, shown.deployed) for m in train]
+    heading = heading_lost(left_out)
+    either = ((heading, left_out), (heading_lost(fitted), fitted))
+    told = [lost for lost, judged in either if lost is not None and tells_worse(judged)]
     most = _NO_WORSE if shown.reference == GIVEN else _BETTER
     gains = [most * before - after for before, after in told]
     worse = next((lost for lost, gain in zip(told, gains) if gain <= 0), None)

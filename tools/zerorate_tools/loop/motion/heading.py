@@ -13,6 +13,9 @@ from .moving import LEAST_DPS, W_LAST, Moving, seconds_seen, turned_between
 
 #: Headings are told over stretches of this length: filters with a magnetometer forget as soon.
 _STRETCH_S = 30.0
+#: Stretches to the length of one, and lengths that tell a wrong matrix from a wrong bias: one alone
+#: does not.
+_OVERLAP, _LEAST_LENGTHS = 4, 1.5
 
 
 def heading_lost(
@@ -27,6 +30,13 @@ def heading_lost(
         return None
     before, after = 60.0 * np.sqrt(np.average(squares, axis=1, weights=_weights(squares)))
     return float(before), float(after)
+
+
+def tells_worse(judged: Sequence[tuple[Moving, NDArray[np.float64]]]) -> bool:
+    """Whether there are stretches enough to forbid a matrix."""
+    seen = [(one, np.isfinite(one.given).all(axis=1)) for one, _ in judged if one.given is not None]
+    numbers = [len(_stretches(*each)) for each in seen]
+    return sum(1.0 + (n - 1) / _OVERLAP for n in numbers if n) >= _LEAST_LENGTHS
 
 
 def _weights(squares: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -66,7 +76,7 @@ def _lost(one: Moving, matrix: NDArray[np.float64]) -> NDArray[np.float64]:
 def _stretches(one: Moving, seen: NDArray[np.bool_]) -> list[tuple[int, int]]:
     """First and last sample of stretches that move, each a quarter on, seen at both ends."""
     n = round(_STRETCH_S / one.dt_s)
-    every = [(a, a + n) for a in range(0, len(one.rate) - n, n // 4)]
+    every = [(a, a + n) for a in range(0, len(one.rate) - n, n // _OVERLAP)]
     spread = [np.degrees(np.sqrt(one.rate[a:b].var(axis=0).sum())) for a, b in every]
     whole = [abs(one.at_s[b] - one.at_s[a] - _STRETCH_S) < 1.0 for a, b in every]
     return [
