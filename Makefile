@@ -57,8 +57,7 @@ attacks: $(VENV)/.dev  ## every attack of docs/faults.md, until one succeeds
 	$(BIN)/python -m host_tests.tools.killed_recorders
 	$(ATTACK) host_tests/report/test_page.py host_tests/fleet/test_population.py -k name
 	$(BIN)/python -m host_tests.firmware.sweep
-	$(BIN)/python -m host_tests.service.restarts
-	$(ATTACK) host_tests/service -k 'not restarts'
+	$(ATTACK) host_tests/service
 	$(BIN)/python -m host_tests.boards.day
 
 layout: $(VENV)/.dev  ## write the constants of tools/zerorate_tools/layout where they are used

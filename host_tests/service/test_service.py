@@ -138,6 +138,7 @@ def test_killed_at_a_chip_that_kept_its_power_it_takes_back_all_of_the_offset(bo
 
 def test_restarts_write_once_an_hour_at_most_whatever_ends_them(tmp_path):
     board = Board(tmp_path, lambda _: [bias + board.clock.now_us / 36e9 for bias in BIAS_DPS])
+    open_files = len(os.listdir("/proc/self/fd"))
     for number in range(30):
         board.restart()
         board.live(4)
@@ -148,6 +149,7 @@ def test_restarts_write_once_an_hour_at_most_whatever_ends_them(tmp_path):
     writes_us = board.file.writes_us
     assert hours - 1 <= len(writes_us) <= hours + 1
     assert min(b - a for a, b in zip(writes_us, writes_us[1:])) >= 3.6e9 - 2e6
+    assert len(os.listdir("/proc/self/fd")) == open_files
 
 
 def test_what_it_publishes_is_imported_as_the_chip_gave_it(board, tmp_path):
