@@ -88,7 +88,6 @@ class BoardStream:
         self._sequence: int | None = None
         self._heard = time.monotonic()
         self._tail = b""
-        self._queue: list[tuple[int, bytes]] = []
 
     def scales(self) -> Scales:
         """The first scales that come. Raises BoardError with what the board said instead."""

@@ -98,8 +98,6 @@ class Verdict:
     times: degrees of heading that the other loses for each that the way does.
     """
 
-    way: str
-    against: str
     word: str
     times: float
 
@@ -152,7 +150,7 @@ class Compared:
         least = 1e-9  # a rest may find a way right to the last bit
         mine_lost, theirs_lost = self.heading_deg_per_min(way), self.heading_deg_per_min(against)
         times = max(theirs_lost, least) / max(mine_lost, least)
-        return Verdict(way, against, word, times)
+        return Verdict(word, times)
 
     def figures(self) -> dict[str, object]:
         ways = {

@@ -24,7 +24,7 @@ _WORDS_BYTES = 65_536
 _ABOUT, _READ = b"about", b"read"
 _TOLD = ("names", "mapping", "sensor", "notes", "words", "said_hz")
 #: Reader -> its function, and what it reads.
-_READERS = {
+_READERS: dict[str, tuple[Callable[..., Table], str]] = {
     "ulog": (flight_logs.ulog, "ULog"),
     "dataflash": (flight_logs.dataflash, "DataFlash log"),
     "blackbox": (flight_logs.blackbox, "blackbox log"),
@@ -36,6 +36,8 @@ _READERS = {
     "columnar": (arrays.columnar, "Parquet or Feather file"),
     "json_file": (json_file.read, "JSON"),
 }
+#: Of several sensors or flights in a log these take the one that is asked for.
+_OF_SEVERAL = ("ulog", "dataflash", "blackbox")
 _RUN = "from zerorate_tools.importers.logs.apart import main; main()"
 
 
@@ -149,7 +151,7 @@ def written(reader: str, path: Path, instance: int, out: int) -> dict[str, Any]:
     """Write the rows to a file descriptor, and return the words of what came of it."""
     read, kind = _READERS[reader]
     try:
-        table = read(path, instance)
+        table = read(path, instance) if reader in _OF_SEVERAL else read(path)
         _write(table, out)
     except MemoryError:
         problem = f"needs more than {MEMORY_MB} MB to be read"

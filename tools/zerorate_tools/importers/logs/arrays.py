@@ -26,7 +26,7 @@ _MATLAB_BYTES = 512
 _RATE = re.compile(r"(?:.*[._ ])?(?:fs|sr|odr|hz|(?:sampl\w*[_ ]?)?(?:rate|freq\w*))", re.I)
 
 
-def matlab(path: Path, instance: int = 0) -> Table:
+def matlab(path: Path) -> Table:
     """A .mat up to version 7; 7.3 is HDF5. Raises BadRecording."""
     import scipy.io
 
@@ -36,7 +36,7 @@ def matlab(path: Path, instance: int = 0) -> Table:
     return table_of_arrays(found, path, do)
 
 
-def hdf5(path: Path, instance: int = 0) -> Table:
+def hdf5(path: Path) -> Table:
     """Its data sets. Raises BadRecording, ModuleNotFoundError."""
     import h5py
 
@@ -54,7 +54,7 @@ def hdf5(path: Path, instance: int = 0) -> Table:
     return table_of_arrays(found, path, "write its table as a CSV, as pandas does by to_csv")
 
 
-def numpy_file(path: Path, instance: int = 0) -> Table:
+def numpy_file(path: Path) -> Table:
     """The arrays of an .npy or .npz, without what is pickled in them. Raises BadRecording."""
     do = "write its arrays by numpy.savez(..., t_s=..., gyro_dps=...), without objects in them"
     with open(path, "rb") as file:
@@ -122,7 +122,7 @@ def _flat(found: dict[str, object]) -> dict[str, object]:
 _CELLS, _ROWS = 4_194_304, 65_536
 
 
-def columnar(path: Path, instance: int = 0) -> Table:
+def columnar(path: Path) -> Table:
     """Its numbers, times, and columns of few words. Raises BadRecording."""
     with open(path, "rb") as file:
         feather = file.read(6) == b"ARROW1"

@@ -34,7 +34,7 @@ _DO = "write an object for each sample, one a line"
 _OF_MOVESENSE = {"ArrayAcc": "m/s2", "ArrayGyro": "dps", "ArrayMagn": "uT"}
 
 
-def read(path: Path, instance: int = 0) -> Table:
+def read(path: Path) -> Table:
     """Raises BadRecording."""
     first, _, others = head(path, 262_144)[0].partition(b"\n")
     if _is_sample(first) and (others.strip() or not _holds_all(_loaded(first))):

@@ -28,7 +28,7 @@ _ENDS = "the file ends within a record"
 _TIME = struct.Struct("<II")
 
 
-def read(path: Path, instance: int = 0) -> Table:
+def read(path: Path) -> Table:
     """Raises BadRecording, ModuleNotFoundError."""
     return _database(path) if path.suffix == ".db3" else _bag(path)
 
@@ -189,7 +189,7 @@ _UNPACKED: dict[bytes, Callable[[bytes], bytes]] = {
 _CODINGS = ("cdr", "ros1", "json")
 
 
-def mcap(path: Path, instance: int = 0) -> Table:
+def mcap(path: Path) -> Table:
     """MCAP, its messages of ROS or as JSON. Raises BadRecording, ModuleNotFoundError."""
     from mcap.exceptions import McapError
     from mcap.reader import NonSeekingReader, make_reader

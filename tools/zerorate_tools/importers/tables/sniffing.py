@@ -254,7 +254,7 @@ def _of_rates(delimiter: str, lines: list[str]) -> _Found | None:
     begins_with_rows = found is not None and found[1] is None
     for at, line in enumerate(lines if not begins_with_rows else ()):
         cells = _cells(line, delimiter)
-        if len(cells) >= _CELLS and not _numbers(cells, delimiter) and gyro_groups(cells):
+        if len(cells) >= _CELLS and not _numbers(cells) and gyro_groups(cells):
             named = _with(delimiter, lines[at:])
             if named and named[1] is not None:
                 return named[0], at + named[1], at + named[2], delimiter
@@ -264,7 +264,7 @@ def _of_rates(delimiter: str, lines: list[str]) -> _Found | None:
 def _says_its_names(line: str, lines: list[str], delimiter: str) -> bool:
     """Whether a line that may be one of names is such as come again with other numbers."""
     names = _cells(line, delimiter)
-    if not _numbers(names, delimiter):
+    if not _numbers(names):
         return False  # the words of its rows may be letters that mark their ends
     for other in lines:
         cells = _cells(other, delimiter)
@@ -289,7 +289,7 @@ def _words(
         most = 0.8 * len(cells)
         if sum(count for _, count in counts.most_common(MOST_WORDS + 1)) <= most:
             continue  # with the empty one, so many words at most
-        kinds = [cell for cell in counts if cell and not _numbers([cell], delimiter)]
+        kinds = [cell for cell in counts if cell and not _numbers([cell])]
         found = sum(counts[kind] for kind in kinds)
         if name not in dates and found > most and 1 <= len(kinds) <= MOST_WORDS:
             out[name] = kinds
@@ -323,14 +323,14 @@ def _with(delimiter: str, lines: list[str], least: int = _CELLS) -> _Found | Non
         cells = _cells(line, delimiter)
         if len(cells) < least:
             continue
-        numbers = _numbers(cells, delimiter)
+        numbers = _numbers(cells)
         if numbers > 1 and above is None and _as_many(comment, cells):
-            if not _numbers(comment, delimiter):
+            if not _numbers(comment):
                 return numbers, None, number, delimiter
         if numbers == len([c for c in cells if c.strip()]) and numbers > 1 and above is None:
             return numbers, None, number, delimiter
         if numbers and above is not None and _as_many(above[1], cells):
-            if numbers == _numbers(above[1], delimiter) >= _CELLS:  # a row itself, with a word
+            if numbers == _numbers(above[1]) >= _CELLS:  # a row itself, with a word
                 return numbers, None, above[0], delimiter
             return numbers, above[0], number, delimiter
         if not numbers or above is None or not _as_many(above[1], cells):
@@ -351,7 +351,7 @@ def _cells(line: str, delimiter: str) -> list[str]:
     return next(csv.reader([text[:100_000]], delimiter=delimiter, skipinitialspace=True), [])
 
 
-def _numbers(cells: list[str], delimiter: str) -> int:
+def _numbers(cells: list[str]) -> int:
     def is_one(cell: str) -> bool:
         is_number = any(form.match(cell) for form in (_NUMBER, _DECIMAL_COMMA, DATE))
         return is_number or bool(_unit_behind(cell))
@@ -394,11 +394,11 @@ def _names(
         text = line.strip()
         if text.startswith(COMMENTS):
             names = _in_comment(text, delimiter)
-            if _as_many(names, first) and not _numbers(names, delimiter):
+            if _as_many(names, first) and not _numbers(names):
                 return _as_wide(names, first), ""
     numbered = [str(number) for number in range(1, len(first) + 1)]
     cells = _cells(lines[skip - 1], delimiter) if skip else []
-    if len(cells) < _CELLS or _numbers(cells, delimiter) or cells[0].startswith(COMMENTS):
+    if len(cells) < _CELLS or _numbers(cells) or cells[0].startswith(COMMENTS):
         return numbered, "no line names the columns: they are called 1, 2, 3, ..."
     why = f"line {skip} names {len(cells)} columns, but rows have {len(first)}"
     return numbered, f"{why}: they are called 1, 2, 3, ..."
@@ -416,7 +416,7 @@ def _with_those_above(names: list[str], lines: list[str], delimiter: str) -> lis
         above = [cell.strip() for cell in _cells(line, delimiter)]
         if len(set(names)) == len(names) and all(names) or not _as_many(names, above):
             return names
-        if _numbers(above, delimiter) or not any(above):
+        if _numbers(above) or not any(above):
             return names
         for at in range(1, len(above)):  # one cell over several columns
             if not above[at] and names[at]:
