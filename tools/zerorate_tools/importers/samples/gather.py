@@ -165,8 +165,8 @@ class _Gathering:
         looked_at = {
             n: np.concatenate([k[n] for k in self.kept]) for n in (TIME, *self.readings)
         }  # fmt: skip
-        own = [n for n in (*ACCEL, TEMP) if not np.isfinite(looked_at.get(n, 0.0)).all()]
-        own += [FELT] * (ACCEL[0] in own)
+        lacking = {n for n in (*ACCEL, TEMP) if not np.isfinite(looked_at.get(n, 0.0)).all()}
+        own = [*((*ACCEL, FELT) if lacking & {*ACCEL} else ()), *lacking - {*ACCEL}]
         looked_at |= {n: np.concatenate(self.beside[n]) for n in own if n in self.beside}
         return Gathered(
             self.spool, self.rows + sum(self.table.dropped.values()), self.samples,
