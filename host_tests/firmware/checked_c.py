@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 from zerorate_tools.kernels.c_functions import Expressions, kernels_in_c
-from zerorate_tools.kernels.library import ENTRIES, address, compile_library, own_text
+from zerorate_tools.kernels.library import ENTRIES, address, compile_library, compiler, own_text
 from zerorate_tools.kernels.reading import Kernels
 
 _OPERATIONS = """\
@@ -98,7 +98,8 @@ class CheckedLibrary:
         self._places = [""] * first + _PLACES[first:]
         with tempfile.TemporaryDirectory(prefix="zerorate-checked-") as folder:
             target = Path(folder) / "checked.so"
-            compile_library(f"{text}\n{own_text('sample.c', 'rows.c')}{_RUN}", target, *flags)
+            text = f"{text}\n{own_text('sample.c', 'rows.c')}{_RUN}"
+            compile_library(compiler(), text, target, *flags)
             self.functions = ctypes.CDLL(str(target))
         self._at = ctypes.c_int32.in_dll(self.functions, "left_at")
         self._by = ctypes.c_int64.in_dll(self.functions, "left_by")

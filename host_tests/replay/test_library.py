@@ -44,7 +44,7 @@ def untried(monkeypatch):
     ("at", "name", "problem"),
     [
         (engines, "library", MissingRuntime("no C compiler here")),
-        (library_module, "_compile", OSError(errno.ENOSPC, "No space left on device")),
+        (library_module, "compile_library", OSError(errno.ENOSPC, "No space left on device")),
     ],
 )
 def test_where_nothing_compiles_the_replay_runs_on_cpython_and_says_so_once(
@@ -70,14 +70,14 @@ def test_a_library_is_compiled_anew_where_no_cache_can_be_written(tmp_path, untr
 
 
 def test_threads_that_ask_together_compile_it_once(tmp_path, untried):
-    compile_, compiled = library_module._compile, []
+    compile_, compiled = library_module.compile_library, []
 
     def counted(command, text, target):
         compiled.append(target)
         compile_(command, text, target)
 
     untried.setenv("ZERORATE_CACHE", str(tmp_path))
-    untried.setattr(library_module, "_compile", counted)
+    untried.setattr(library_module, "compile_library", counted)
     with ThreadPoolExecutor(4) as threads:
         found = {id(library) for library in threads.map(lambda _: compiled_library(), range(4))}
     assert (len(found), len(compiled)) == (1, 1)
@@ -86,7 +86,7 @@ def test_threads_that_ask_together_compile_it_once(tmp_path, untried):
 def test_a_library_that_the_full_cache_has_no_room_to_link_is_compiled_elsewhere(
     tmp_path, untried, capsys
 ):
-    compile_ = library_module._compile
+    compile_ = library_module.compile_library
 
     def no_room_in_the_cache(command, text, target):
         if tmp_path in target.parents:
@@ -94,7 +94,7 @@ def test_a_library_that_the_full_cache_has_no_room_to_link_is_compiled_elsewhere
         compile_(command, text, target)
 
     untried.setenv("ZERORATE_CACHE", str(tmp_path))
-    untried.setattr(library_module, "_compile", no_room_in_the_cache)
+    untried.setattr(library_module, "compile_library", no_room_in_the_cache)
     assert compiled_library().zerorate_run
     assert "compiled for this run" in capsys.readouterr().err
 

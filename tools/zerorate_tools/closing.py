@@ -52,16 +52,14 @@ def _index(
     if holdout is None:
         return None
     paths = [Path(log) for log in logs]
-    at = next(
-        (i for i, p in enumerate(paths) if p == Path(holdout) or p.name == str(holdout)), None
-    )
-    if at is None:
-        raise ZerorateError(
-            f"{holdout}: none of the recordings given; name one of them to hold out"
-        )
-    if names[at] not in kept:
+    named = (n for n, p in zip(names, paths) if p == Path(holdout) or p.name == str(holdout))
+    name = next(named, None)
+    if name is None:
+        do = "name one of them to hold out"
+        raise ZerorateError(f"{holdout}: none of the recordings given; {do}")
+    if name not in kept:
         raise CannotClose(f"{holdout} cannot be held out: too little of it is still")
-    return kept.index(names[at])
+    return kept.index(name)
 
 
 def close(

@@ -92,10 +92,10 @@ def _library() -> ctypes.CDLL:
     prebuilt = _PREBUILT / f"{key}{_ending(sys.platform)}"
     if prebuilt.is_file():
         return ctypes.CDLL(str(prebuilt))
-    command = _compiler()
+    command = compiler()
     try:
         kept = cache_folder() / "kernels" / key
-        folder = fill(kept, lambda draft: _compile(command, text, draft / name))
+        folder = fill(kept, lambda draft: compile_library(command, text, draft / name))
         return ctypes.CDLL(str(folder / name))
     except (OSError, RuntimeError, ZerorateError) as error:  # RuntimeError: there is no HOME
         found = _for_this_process(command, text, name)
@@ -107,7 +107,7 @@ def _for_this_process(command: list[str], text: str, name: str) -> ctypes.CDLL:
     # a library that is loaded may lose its file; Windows keeps it, and the folder with it
     try:
         with tempfile.TemporaryDirectory(prefix="zerorate-", ignore_cleanup_errors=True) as folder:
-            _compile(command, text, Path(folder) / name)
+            compile_library(command, text, Path(folder) / name)
             return ctypes.CDLL(str(Path(folder) / name))
     except OSError as error:
         raise MissingRuntime(f"no place to compile the kernels: {_why(error)}") from error
@@ -140,7 +140,7 @@ def cross_compiled(text: str, system: tuple[str, str], target: Path) -> Path:
     """C as a library for another system, (platform, machine). Raises MissingRuntime."""
     # Windows has no C library that every machine has: no loop may become its memset
     own = ("-nostdlib", "-fno-builtin") if system[0] == "win32" else ()
-    _compile([*_zig(), "-target", _TARGETS[system], "-s", *own], text, target)
+    compile_library([*_zig(), "-target", _TARGETS[system], "-s", *own], text, target)
     return target
 
 
@@ -186,15 +186,11 @@ def run_rows(
     return bias, source, quality, verdict
 
 
-def compile_library(text: str, target: Path, *flags: str) -> None:
-    """Compile C to a library at `target`. Raises MissingRuntime without a C compiler."""
-    _compile(_compiler(), text, target, flags)
-
-
-def _compile(compiler: list[str], text: str, target: Path, more: tuple[str, ...] = ()) -> None:
+def compile_library(command: list[str], text: str, target: Path, *flags: str) -> None:
+    """Compile C to a library at `target` by a `compiler`. Raises ZerorateError."""
     source = target.with_suffix(".c")
     source.write_text(text, encoding="utf-8")
-    command = [*compiler, *_FLAGS, *more, str(source), "-o", str(target)]
+    command = [*command, *_FLAGS, *flags, str(source), "-o", str(target)]
     done = subprocess.run(command, capture_output=True, text=True)
     if os.strerror(errno.ENOSPC) in done.stderr:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(target))
@@ -202,7 +198,8 @@ def _compile(compiler: list[str], text: str, target: Path, more: tuple[str, ...]
         raise ZerorateError(f"the kernels do not compile here: {done.stderr.strip()[:300]}")
 
 
-def _compiler() -> list[str]:
+def compiler() -> list[str]:
+    """The command of a C compiler. Raises MissingRuntime."""
     found = shutil.which("cc")
     return [found] if found else _zig()
 

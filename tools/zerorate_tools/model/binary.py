@@ -11,20 +11,7 @@ from typing import Any
 from ..errors import BadModel
 from ..layout import INPUT_KIND, LIMITS
 from ..recordings import Scales
-from .model import (
-    FAST,
-    FRAME,
-    ONE,
-    TIME,
-    VIBRATION,
-    Binding,
-    CannotDeploy,
-    Input,
-    Model,
-    Slot,
-    is_channel,
-    sources_of,
-)
+from .model import KINDS, Binding, CannotDeploy, Input, Model, Slot, is_channel, sources_of
 from .plays import label_of, slots_of_play, split, words_of_play
 from .slot_reading import slot_of
 from .slot_words import Unit, inputs_for, words_of
@@ -33,7 +20,6 @@ VERSION, VERSION_WITH_PLAYS = 1, 2
 _HEAD = struct.Struct("<3sBHBBBBBx4BI5d")
 _INPUT, _SLOT, _TABLE = struct.Struct("<3i"), struct.Struct("<30i"), struct.Struct("<9i")
 _PLAY = struct.Struct("<13i")
-_KINDS = (*FRAME, VIBRATION, TIME, ONE, *FAST)
 #: The code of what is not known.
 ANY = 255
 _Q24 = 1 << 24
@@ -191,13 +177,11 @@ def _there(name: str, of_the_sample: bool, among: Container[tuple[str, bool]]) -
 
 
 def _kind(source: Input, channels: Sequence[str]) -> int:
+    now = source.of_the_sample
     if is_channel(source.name):
-        now = source.of_the_sample
         first = INPUT_KIND.KIND_CHANNEL_NOW if now else INPUT_KIND.KIND_CHANNEL
         return first + list(channels).index(source.name)
-    if source.of_the_sample:
-        return INPUT_KIND.KIND_INSTANT + FAST.index(source.name)
-    return _KINDS.index(source.name)
+    return KINDS.index(source.name, INPUT_KIND.KIND_INSTANT if now else 0)
 
 
 def _input(raw: Sequence[int], channels: Sequence[str]) -> Input:
@@ -205,7 +189,7 @@ def _input(raw: Sequence[int], channels: Sequence[str]) -> Input:
     if kind >= INPUT_KIND.KIND_CHANNEL:
         now, at = divmod(kind - INPUT_KIND.KIND_CHANNEL, LIMITS.MOST_CHANNELS)
         return Input(channels[at], bool(now), shift, offset)
-    return Input(_KINDS[kind], kind >= INPUT_KIND.KIND_INSTANT, shift, offset)
+    return Input(KINDS[kind], kind >= INPUT_KIND.KIND_INSTANT, shift, offset)
 
 
 def codes_of(binding: Binding) -> bytes:

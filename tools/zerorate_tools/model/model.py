@@ -20,6 +20,8 @@ FRAME = (*ACCELERATIONS, "temp", *RATES)
 #: Sources that a hand moves faster than a tick, in the order of the firmware's kinds of them.
 FAST = (*RATES, *ACCELERATIONS)
 VIBRATION, TIME, ONE = "vib", "time", "one"
+#: Every source but an extra channel, by the firmware's number of its kind (layout.INPUT_KIND).
+KINDS = (*FRAME, VIBRATION, TIME, ONE, *FAST)
 KEY = "binding"
 NAMES = ("chip_id", "gyro_range", "accel_range", "filter")
 
