@@ -1,11 +1,16 @@
-"""Floors, intervals and chances, beside noise that is drawn."""
+"""Noise, floors, intervals and chances, and what a candidate must reach."""
 
 import numpy as np
 import pytest
 from scipy.stats import chi2
+from zerorate_bench.loop.simulated import flicker, simulate
+from zerorate_tools.allan import Noise, overlapping
 from zerorate_tools.loop.fit.intervals import block_bootstrap, rms
 from zerorate_tools.loop.fit.regression import Regression, floor_dps, noise_of
 from zerorate_tools.loop.fit.surrogates import NullRatios, null_ratios
+from zerorate_tools.loop.read.lines import find, spectrum
+from zerorate_tools.loop.search import decide
+from zerorate_tools.loop.search.select import Search
 
 from . import dense
 from .dense import A, B, C
@@ -55,3 +60,81 @@ def test_surrogates_of_white_noise_reach_what_theory_says_and_a_true_effect_does
     assert with_effect.mean == pytest.approx(quiet.mean, rel=0.05)
     left_in = null_ratios(moved, [], [B], [A])
     assert left_in.mean > 1.5 * quiet.mean
+
+
+@pytest.mark.parametrize(
+    ("family", "level"), [("catalogue", 2.5e-3), ("generic", 5e-5), ("step", 2e-3)]
+)
+def test_a_family_s_chance_is_that_of_one_times_all_that_were_tried(family, level):
+    assert decide.family_p(20.0, 3, 5.0) == pytest.approx(5 * chi2.sf(20.0, 3))
+    assert decide.family_p(1.0, 3, 5.0) == 1.0
+    least = decide.smallest_ratio(family, 3, 7.0)
+    assert decide.family_p(least, 3, 7.0) == pytest.approx(level)
+
+
+@pytest.mark.parametrize(
+    ("columns", "tests"),
+    [
+        (np.zeros((5, 3)), 1.0),
+        (np.ones((5, 1)), 1.0),
+        (np.eye(5)[:, :3] * [1.0, 9.0, 0.1], 3.0),
+        (np.array([[1.0, 0.6, 0.0], [0.0, 0.8, 0.0]]), np.sqrt([1.6, 0.4]).sum() ** 2 / 2),
+    ],
+)
+def test_columns_count_as_many_tests_as_they_are_apart(columns, tests):
+    assert decide.effective(columns) == pytest.approx(tests)
+
+
+def test_the_deviation_of_fitted_noise_is_the_deviation_of_the_noise():
+    rng = np.random.default_rng(3)
+    rate = np.column_stack([flicker(rng, 8000, 1.0) for _ in range(8)])
+    tau, deviation = overlapping(rate, 20.0)
+    at = np.searchsorted(tau, 2000.0)
+    expected = Noise(20.0, 0.0, 1.0, 0.0).deviation(tau[at : at + 1])
+    assert np.sqrt((deviation[at] ** 2).mean()) == pytest.approx(expected[0], rel=0.1)
+
+
+def test_a_drift_of_twice_the_floor_is_found_beside_a_walking_noise():
+    found = Search(simulate(5000012, [("time-drift", 2.0)]).sessions[:-1]).run().found
+    assert [f.candidate.kind for f in found] == ["time-drift"]
+
+
+N, STEP_S = 3600, 1.0
+
+
+def coloured(rng):
+    walk = np.cumsum(rng.normal(0, 2e-4, (N, 3)), axis=0)
+    pink = np.column_stack([flicker(rng, N, 1e-3) for _ in range(3)])
+    return rng.normal(0, 3e-3, (N, 3)) + pink + walk
+
+
+def lines(rates):
+    spectra = [spectrum(r, STEP_S, 4096) for r in rates]
+    return find(spectra[:-1], spectra[-1:], 2.0 * 4096 / N, 10 / N)
+
+
+def test_coloured_noise_has_no_lines():
+    for seed in range(20):
+        rng = np.random.default_rng(seed)
+        assert lines([coloured(rng) for _ in range(4)]) == []
+
+
+@pytest.mark.parametrize("seed", [216, 372])
+def test_the_humps_of_a_walk_in_one_short_recording_are_no_lines(seed):
+    rng = np.random.default_rng(seed)
+    rate = rng.normal(0, 1e-3, (880, 3)) + np.cumsum(rng.normal(0, 2e-4, (880, 3)), axis=0)
+    assert find([spectrum(rate, STEP_S, 1024)], [], 2.0 * 1024 / 880, 10 / 880) == []
+
+
+@pytest.mark.parametrize("period_s", [7.3, 60.0, 240.0])
+def test_a_line_is_found_with_its_period_and_amplitude(period_s):
+    rng = np.random.default_rng(1)
+    t = np.arange(N) * STEP_S
+    size = np.array([4e-3, 1e-3, 3e-3])
+    rates = [
+        coloured(rng) + np.outer(np.sin(2 * np.pi * t / period_s + rng.uniform(0, 6)), size)
+        for _ in range(4)
+    ]
+    (line,) = lines(rates)
+    assert 1 / line.hz == pytest.approx(period_s, rel=0.06) and line.in_holdout
+    assert line.amplitude_dps[0] == pytest.approx(size[0], rel=0.3)

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from zerorate_bench.loop.simulated import simulate
 from zerorate_tools.loop.fit.cross_products import GappyWhitener, cross_products, whitener
 from zerorate_tools.loop.fit.likelihood import session_scale
 from zerorate_tools.loop.fit.regression import Regression
@@ -153,3 +154,22 @@ def test_a_block_is_an_outlier_beyond_six_robust_deviations_from_nine_neighbours
     few.rate[0][0] = 1e6
     few.settle([A])
     assert few.outliers == 0
+
+
+# 6 mdps of noise a block over a hundred poses and more, thrice
+FLOOR_DPS_A_G2 = 0.003
+
+
+def test_the_sum_of_squares_that_gravity_holds_gets_no_coefficient_from_noise():
+    rng = np.random.default_rng(3)
+    session = simulate(4).sessions[0]
+    poses = rng.normal(size=(session.blocks, 3))
+    poses /= np.linalg.norm(poses, axis=1)[:, None]
+    read_g = poses + (0.03, -0.02, 0.04) + rng.normal(0.0, 4e-4, poses.shape)
+    names = ("acc_x", "acc_y", "acc_z")
+    sources = {n: np.repeat(g, session.ticks_per_block) for n, g in zip(names, read_g.T)}
+    turned = replace(session, sources=sources, rate_dps=session.rate_dps + 0.08 * poses)
+    terms = [Term(n, power=power) for power in (1, 2) for n in names]
+    fitted = Regression([turned]).fit(terms).coefficients
+    assert np.abs(fitted[3:].sum(axis=0)).max() < 3 * FLOOR_DPS_A_G2
+    assert fitted[:3] == pytest.approx(0.08 * np.eye(3), abs=FLOOR_DPS_A_G2)

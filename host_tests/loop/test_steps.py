@@ -1,11 +1,17 @@
 """Steps of the bias: found before effects, in every stretch an offset, and never invented."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from zerorate_bench.loop.simulated import simulate, simulate_corners
 from zerorate_tools.loop.analyse import analyse
+from zerorate_tools.loop.search import steps_first
 from zerorate_tools.loop.search.steps_first import remove_steps
 from zerorate_tools.model.term import first_order_lag
+
+from . import dense
+from .selections import step
 
 
 def stepped(seed, floors, *places, effects=()):
@@ -41,9 +47,9 @@ def test_three_large_steps_hide_none_of_them():
     session, floor = stepped(0, 40.0, 50, 90, 130)
     (clean,) = remove_steps([session])
     assert [s.block - s.share for s in clean.steps] == [50, 90, 130]
-    for step, sign in zip(clean.steps, (1, -1, 1)):
-        off = step.size_dps - sign * 40 * floor * (1, -1, 1)
-        assert (np.abs(off) < 5 * step.deviation_dps).all()
+    for found, sign in zip(clean.steps, (1, -1, 1)):
+        off = found.size_dps - sign * 40 * floor * (1, -1, 1)
+        assert (np.abs(off) < 5 * found.deviation_dps).all()
 
 
 def test_a_step_is_taken_out_of_a_recording_alone_where_less_is_left_without_it():
@@ -171,3 +177,47 @@ def test_what_follows_a_pose_that_changes_often_is_no_step_and_a_step_no_acceler
 def test_a_part_that_is_late_at_a_sharp_corner_of_temperature_makes_no_step(seed):
     (session,) = simulate_corners(seed).sessions
     assert steps_at(session) == []
+
+
+BLOCKS, TICKS = 60, np.arange(120)
+
+
+def in_ticks(known, jump, **sources):
+    """12 blocks of 10 ticks of 2 s, of which some are known; after a jump the bias is another."""
+    level = (TICKS >= jump)[:, None] * np.array([1.0, -1.0, 0.0])
+    ticks = np.where(known[:, None], level, np.nan)
+    session = dense.white(4, 12)
+    return replace(session, ticks_per_block=10, ticks_dps=ticks, sources=sources)
+
+
+KNOWN, GAP = TICKS >= 0, (TICKS < 60) | (TICKS > 66)
+STEP = step(6, (1.0, -1.0, 0.0), (0.1, 0.1, 1.0))
+
+
+# of what shakes within a tick, squares
+SHAKEN = np.where(TICKS == 64, 0.01, 0.0009)
+
+
+@pytest.mark.parametrize(
+    ("known", "force", "vib", "at_s", "seen"),
+    [
+        (GAP, (TICKS > 68) * 0.5, 0 * SHAKEN, 138.0, "0.87 g"),
+        (KNOWN, 0.0 * TICKS, SHAKEN, 128.0, "0.07 g"),
+    ],
+)
+def test_a_knock_within_its_ticks_has_the_step_s_moment(known, force, vib, at_s, seen):
+    session = in_ticks(known, 63, vib=vib, **{f"acc_{axis}": force for axis in "xyz"})
+    told = steps_first._timed(session, STEP, np.zeros((120, 3)))
+    assert told.at_s == at_s and seen in told.said
+
+
+@pytest.mark.parametrize(
+    ("second", "sign", "listed"), [(31, 1, [2.0]), (31, -1, [1.0, -1.0]), (32, 1, [1.0, 1.0])]
+)
+def test_a_step_that_two_blocks_in_turn_show_is_one(answers, second, sign, listed):
+    one, two = step(30, deviation_dps=[0.3] * 3), step(second, [sign] * 3, [0.4] * 3)
+    answers(steps_first, hold_disturbed=None, steps_and_lags=([two, one], {}))
+    found = steps_first._steps(dense.white(4, BLOCKS), 1)
+    assert [s.size_dps.tolist() for s in found] == [[size] * 3 for size in listed]
+    assert found[0].block == 30
+    assert found[0].deviation_dps == pytest.approx([0.5 if len(listed) == 1 else 0.3] * 3)
