@@ -191,7 +191,7 @@ def _stand(
     regression: Regression, terms: Terms, steps: list[Step], kept: Events, recordings: int
 ) -> bool:
     """Whether each is beyond what the places away from all of them show; ratios are renewed."""
-    away = _away(regression, steps, _best(regression, terms)[1])
+    away = _away(steps, _best(regression, terms)[1])
     for step in steps:
         others = [s for s in steps if s is not step]
         step.ratio = _gain(regression, terms, others, step, kept)
@@ -219,7 +219,7 @@ def _best(regression: Regression, terms: Terms) -> tuple[Step | None, Ratios]:
     return Step(place.session, block, np.zeros(3), place.ratio, 1.0, share=block - place.at), every
 
 
-def _away(regression: Regression, steps: list[Step], every: Ratios) -> np.ndarray:
+def _away(steps: list[Step], every: Ratios) -> np.ndarray:
     """Ratios at the places away from every step."""
     out = []
     for s, at, ratios in every:

@@ -43,7 +43,6 @@ class Course:
     bias: dict[str, np.ndarray]
     residual: dict[str, np.ndarray]
     offset_dps: dict[str, np.ndarray] = field(default_factory=dict)
-    unscored: int = 0
     pieces: np.ndarray = field(default_factory=lambda: np.zeros(0, int))
 
 
@@ -226,4 +225,4 @@ def scored(
     rate[:unscored] = np.nan
     time_s = (np.arange(p.session.blocks) + 0.5) * p.session.block_s
     residual = {way: rate - b for way, b in bias.items()}
-    return Course(time_s, bias, residual, offsets or {}, unscored)
+    return Course(time_s, bias, residual, offsets or {})
