@@ -85,8 +85,8 @@ class Unwrapped:
             spans["60 minutes"] = _HOUR_US
         for clock, span in {**spans, "24 hours": _DAY_US}.items():
             night = clock == "24 hours" and not self._step_us
-            longest = min(_LONGEST_PAUSE_US, _PAUSE_OF_SPAN * span)
-            longest = _LONGEST_NIGHT_US if night else longest
+            usual = min(_LONGEST_PAUSE_US, _PAUSE_OF_SPAN * span)
+            longest = _LONGEST_NIGHT_US if night else usual
             if earlier < span and 0 < later + span - earlier < longest:
                 return clock, span
         return "", 0.0
