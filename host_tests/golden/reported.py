@@ -15,8 +15,8 @@ from zerorate_tools.loop.motion.scales_and_timing import InMotion, Timing
 from zerorate_tools.loop.read.gate import GateReport
 from zerorate_tools.loop.read.lines import Line
 from zerorate_tools.loop.read.sessions import block_basis
-from zerorate_tools.loop.report.in_words import in_words
 from zerorate_tools.loop.report.report import as_json, report
+from zerorate_tools.loop.report.result import in_words
 from zerorate_tools.loop.search.catalogue import Candidate
 from zerorate_tools.loop.search.decide import Decision
 from zerorate_tools.loop.search.select import select

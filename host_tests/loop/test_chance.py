@@ -5,9 +5,8 @@ import pytest
 from scipy.stats import chi2
 from zerorate_bench.loop.simulated import flicker, simulate
 from zerorate_tools.allan import Noise, overlapping
-from zerorate_tools.loop.fit.intervals import block_bootstrap, rms
 from zerorate_tools.loop.fit.regression import Regression, floor_dps, noise_of
-from zerorate_tools.loop.fit.surrogates import NullRatios, null_ratios
+from zerorate_tools.loop.fit.resampling import NullRatios, block_bootstrap, null_ratios, rms
 from zerorate_tools.loop.read.lines import find, spectrum
 from zerorate_tools.loop.search import decide
 from zerorate_tools.loop.search.select import Search

@@ -6,9 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from zerorate_tools.loop.fit import line
-from zerorate_tools.loop.fit.free_curve import draw
 from zerorate_tools.loop.fit.regression import Regression
-from zerorate_tools.loop.fit.smooth import curve_of, matern
+from zerorate_tools.loop.fit.smooth import curve_of, draw, matern
 from zerorate_tools.loop.read.sessions import block_basis
 from zerorate_tools.loop.search.selection import deployed as told_by
 from zerorate_tools.model.term import Term

@@ -8,8 +8,8 @@ from typing import Any, Literal, Union, get_args, get_origin, get_type_hints, is
 import numpy as np
 import pytest
 from zerorate_tools import LoopReport
-from zerorate_tools.loop.fit.free_curve import draw
 from zerorate_tools.loop.fit.regression import Regression
+from zerorate_tools.loop.fit.smooth import draw
 from zerorate_tools.loop.report import report as form
 
 from . import dense

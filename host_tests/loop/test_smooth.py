@@ -8,10 +8,10 @@ import pytest
 from zerorate_bench.loop.devices import CURVE, Device
 from zerorate_bench.loop.run_trial import run_trial
 from zerorate_bench.loop.simulated import simulate
-from zerorate_tools.loop.fit.free_curve import draw
 from zerorate_tools.loop.fit.line import ordinary
 from zerorate_tools.loop.fit.regression import Regression, predicted
 from zerorate_tools.loop.fit.single import PiecesByLine, held
+from zerorate_tools.loop.fit.smooth import draw
 from zerorate_tools.loop.search import curve
 from zerorate_tools.loop.search.catalogue import ranges
 from zerorate_tools.model.effects import is_free

@@ -106,7 +106,7 @@ def _shares(counts: dict[str, int], total: int) -> str:
 )
 def run_close(arguments: argparse.Namespace) -> None:
     from ..closing import close, motion_in_words
-    from ..loop.report.in_words import in_words
+    from ..loop.report.result import in_words
     from ..report.sentences import headline, why_both
 
     a = arguments

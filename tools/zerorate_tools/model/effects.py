@@ -32,7 +32,7 @@ class Effect:
     title goes behind the channel's name). fields: of its `term.Term`; grids: further fields, the
     values tried for each, `knot` as shares of the range, a centre by name. curve: (n,) -> (n,) in
     the source's unit, for what is no power: the board holds nine points of it. free: a curve of any
-    form, as smooth as the recordings say (`loop/fit/free_curve.py`).
+    form, as smooth as the recordings say (`loop/fit/smooth.py`).
     """
 
     kind: str

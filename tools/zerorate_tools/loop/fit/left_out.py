@@ -4,10 +4,10 @@ import numpy as np
 
 from ...model.term import Terms
 from .cross_products import CrossProducts
-from .free_curve import is_curve
 from .likelihood import Base
 from .regression import Regression
 from .shrunk import has_play_operators, shrink
+from .smooth import is_curve
 
 
 def precision_of(

@@ -18,10 +18,10 @@ from scipy.ndimage import binary_dilation
 from ...model.effects import is_free
 from ...model.term import Term, Terms, play
 from ..read.sessions import Session
-from .free_curve import draw
 from .line import by_axis, ordinary, with_line
 from .regression import Regression, predicted
 from .shrunk import has_play_operators
+from .smooth import draw
 
 #: Pieces, and the turns in which they are left out: each turn has pieces far apart.
 PIECES, FOLDS = 20, 10

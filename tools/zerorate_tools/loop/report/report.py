@@ -7,9 +7,9 @@ import numpy as np
 
 from ...model.effects import is_free, of_any_channel
 from ...model.model import Slot
-from ..fit.free_curve import draw
-from ..fit.intervals import block_bootstrap, rms
+from ..fit.resampling import block_bootstrap, rms
 from ..fit.single import STEPS_CHOSEN, WEAKER
+from ..fit.smooth import draw
 from ..read.sessions import Session
 from ..search.periodic import QUICK_HZ
 from ..search.selection import Found, Selection

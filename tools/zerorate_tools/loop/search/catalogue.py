@@ -10,7 +10,7 @@ import numpy as np
 from ...model import effects
 from ...model.effects import ANY_CHANNEL, SUPPLY, Effect, of_any_channel, table_of
 from ...model.term import Term
-from ..fit.free_curve import is_curve, parts
+from ..fit.smooth import is_curve, parts
 from ..motion.columns import LONGEST_S
 from ..read.sessions import Session, block_basis, common_sources
 

@@ -8,12 +8,12 @@ import numpy as np
 from scipy.stats import chi2
 
 from ...model.term import Terms
-from ..fit.free_curve import of_any_form
 from ..fit.left_out import gains
 from ..fit.noise import NATS
 from ..fit.regression import Regression
+from ..fit.resampling import null_ratios
 from ..fit.single import PiecesByLine
-from ..fit.surrogates import null_ratios
+from ..fit.smooth import of_any_form
 from .catalogue import Candidate
 
 #: Family-wise levels: the chance that anything of the family passes the first lock on a device

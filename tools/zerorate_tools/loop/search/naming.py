@@ -8,9 +8,9 @@ from scipy.special import logsumexp
 
 from ...model.effects import is_free
 from ...model.term import Term, Terms
-from ..fit.free_curve import parts
 from ..fit.line import is_slope
 from ..fit.regression import Regression
+from ..fit.smooth import parts
 from ..read.earth import ROTATION, can_be_earth
 from ..read.sessions import block_basis
 from .catalogue import Candidate

@@ -9,8 +9,8 @@ from scipy.optimize import minimize_scalar
 
 from ...model.effects import DELAY_STEP_S, is_free
 from ...model.term import Term, Terms
-from ..fit.free_curve import draw
 from ..fit.regression import Regression
+from ..fit.smooth import draw
 from .catalogue import MARGIN, REFINED, Candidate
 
 _Scale = Callable[[float], float]

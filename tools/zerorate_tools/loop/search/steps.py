@@ -14,8 +14,8 @@ from scipy.stats import chi2
 from ...model.term import Term, Terms
 from ..fit.noise import NATS
 from ..fit.regression import Events, Regression, predicted
+from ..fit.resampling import NullRatios
 from ..fit.shrunk import shrink
-from ..fit.surrogates import NullRatios
 from ..read.sessions import Session
 from .catalogue import SMALLEST, Candidate, candidates, lags, late
 from .decide import LEVEL

@@ -1,4 +1,4 @@
-"""What irrelevant channels score on this device's own noise.
+"""Chance by resampling: what irrelevant channels score on this noise, and intervals of an RMS.
 
 A surrogate keeps the spectrum of some candidate's column in every session and loses its phase: its
 DCT coefficients are multiplied by random numbers. Surrogates are scored on what the candidate under
@@ -9,6 +9,7 @@ their mean and variance takes the place of chi- squared.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -62,3 +63,29 @@ def null_ratios(regression: Regression, terms: Terms, candidate: Terms, pool: Te
     base = fit_base(g, regression.scale)
     found = ratios(g, base, regression.scale).sum(axis=1)
     return NullRatios.of(float(found.mean()), float(found.var()), regression.y[0].shape[1])
+
+
+def block_bootstrap(
+    parts: list[np.ndarray], statistic: Callable[[np.ndarray], np.ndarray]
+) -> tuple[np.ndarray, np.ndarray]:
+    """2.5 % and 97.5 % points of a statistic of (n, ...) rows drawn in runs of sqrt(n) rows
+    (Kuensch 1989): how far the noise remembers is not known.
+
+    parts: one array a session, rows in time order, NaN rows dropped; statistic: of the rows drawn.
+    """
+    rng = np.random.default_rng(0)
+    rows = np.vstack([p[np.isfinite(p).all(axis=1)] for p in parts])
+    length = round(len(rows) ** 0.5)
+    runs = -(-len(rows) // length)
+    values = []
+    for _ in range(COUNT):
+        start = rng.integers(0, len(rows) - length + 1, runs)
+        at = (start[:, None] + np.arange(length)).ravel()[: len(rows)]
+        values.append(statistic(rows[at]))
+    low, high = np.quantile(np.array(values), [0.025, 0.975], axis=0)
+    return low, high
+
+
+def rms(rows: np.ndarray) -> np.ndarray:
+    """Root mean square along the first axis."""
+    return np.sqrt(np.mean(rows**2, axis=0))
