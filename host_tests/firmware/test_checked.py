@@ -145,8 +145,8 @@ def test_the_time_of_refused_samples_goes_to_the_next(feed):
 
 
 def test_checkpoints_take_nothing_from_the_heap(micropython, repository):
-    script = Path(__file__).parent / "on_micropython" / "checked_without_heap.py"
-    said = micropython.run(script, modules=[repository / "firmware"], check=True)
+    script = Path(__file__).parent / "on_micropython" / "parts_without_heap.py"
+    said = micropython.run(script, ["checkpoints"], modules=[repository / "firmware"], check=True)
     assert said.stdout.strip() == "True 1"
 
 

@@ -120,7 +120,8 @@ def test_no_intermediate_leaves_31_bits(model):
 
 def test_bytecode_refines_as_cpython_does(micropython, repository):
     result = micropython.run(
-        Path(__file__).parent / "on_micropython" / "refine_without_heap.py",
+        Path(__file__).parent / "on_micropython" / "parts_without_heap.py",
+        ["refinement"],
         modules=[repository / "firmware"],
         files_in={"model.bin": encoded(build_model(TWO, SCALES))},
         files_out=["out.bin"],

@@ -108,7 +108,8 @@ def test_the_effects_are_those_that_were_committed(on_host):
 
 def test_bytecode_gives_the_effects_that_cpython_gives(micropython, repository, model_bin, on_host):
     result = micropython.run(
-        _HERE / "on_micropython" / "effects_without_heap.py",
+        _HERE / "on_micropython" / "parts_without_heap.py",
+        ["effects"],
         modules=[repository / "firmware"],
         files_in={"model.bin": model_bin},
         files_out=["out.bin"],

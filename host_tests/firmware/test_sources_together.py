@@ -66,14 +66,14 @@ def test_every_interpreter_decides_the_same_and_allocates_nothing(
     micropython, repository, samples, expected
 ):
     result = micropython.run(
-        Path(__file__).parent / "on_micropython" / "motion_without_heap.py",
-        [str(len(samples))],
+        Path(__file__).parent / "on_micropython" / "parts_without_heap.py",
+        ["sources"],
         modules=[repository / "firmware"],
         files_in={"samples.bin": samples.astype("int32").tobytes()},
-        files_out=["state.bin"],
+        files_out=["out.bin"],
         check=True,
     )
-    assert result.files["state.bin"] == expected
+    assert result.files["out.bin"] == expected
 
 
 def test_the_kernels_that_are_compiled_decide_the_same(samples, expected):
