@@ -19,9 +19,8 @@ from zerorate_tools.recordings import open_recording
 from zerorate_tools.replay import replay
 from zerorate_tools.report import sentences
 from zerorate_tools.report.estimators import moments
-from zerorate_tools.report.page import deployment
+from zerorate_tools.report.page import deployment, plots_of
 from zerorate_tools.report.plot import thinned
-from zerorate_tools.report.report_folder import plots_of
 from zerorate_tools.report.residual_plots import HeldOut, against_time, longest
 from zerorate_tools.report.sentences import corrects_at_rest, headline, why_both
 

@@ -1,5 +1,5 @@
 """report.html: what the loop found, for a person, in one file that needs no network."""
 
-from .report_folder import write_report
+from .page import write_report
 
 __all__ = ["write_report"]

@@ -1,4 +1,4 @@
-"""report.html: one file that needs nothing else."""
+"""report.html of a closed loop: one file that needs nothing else."""
 
 from __future__ import annotations
 
@@ -15,13 +15,23 @@ from typing import Any
 
 import numpy as np
 
+from ..errors import ZerorateError
+from ..loop.read.ticks import AnyPath
+from ..loop.verify.analysis import Analysis
+from ..model import read_model
 from ..numbers import chance, figure
-from . import sentences
+from ..recordings.atomic import final
+from . import residual_plots, sentences
+from .effect_plots import effect_plots
+from .estimators import held_over_time, inside, moments
 from .plot import Panel, Plot, Series
+from .sentences import title
 
 # Heights in CSS pixels: of a panel in a stack, alone, beside others and under others, and of what
 # is about them (page.js).
 _STACKED_PX, _ALONE_PX, _BESIDE_PX, _UNDER_PX, _EDGE_PX = 120, 230, 300, 246, 64
+#: Moments at which the firmware's state is looked at, of all recordings together.
+_MOST_MOMENTS = 120
 _UNSAFE = {ord(c): f"\\u{ord(c):04x}" for c in "<>&\u2028\u2029'"}
 #: Role -> colour on light ground, colour on dark ground.
 ROLES: dict[str, tuple[str, str]] = {
@@ -227,3 +237,45 @@ def deployment(folder: Path, channels: Sequence[str]) -> Deployment:
     values = [name if name.isidentifier() and name.isascii() else "value" for name in channels]
     lines = [f"effects.channel({name!r}, {value})\n" for name, value in zip(channels, values)]
     return Deployment(commands, _LOAD, "".join(lines))
+
+
+def write_report(
+    analysis: Analysis, result: Mapping[str, Any], logs: Sequence[AnyPath], folder: AnyPath
+) -> Path:
+    """Write report.html beside the model in `folder`; its path.
+
+    analysis: of `closing.load`; result: what report.json holds, whose numbers are shown;
+    logs: the recordings, replayed to show the estimators. Raises OSError.
+    """
+    folder = Path(folder)
+    plots, notes = plots_of(analysis, result, logs, folder)
+    board = deployment(final(folder), read_model(folder / "model.bin").channels)
+    path = folder / "report.html"
+    path.write_text(page(result, plots, board, notes), encoding="utf-8")
+    return path
+
+
+def plots_of(
+    analysis: Analysis, result: Mapping[str, Any], logs: Sequence[AnyPath], folder: AnyPath
+) -> tuple[list[Plot], list[str]]:
+    """Every plot that these recordings allow, and sentences on those that they do not."""
+    parts, notes = residual_plots.held_out(analysis), []
+    names = [title(s["effect"], s["sources"]) for s in result["effects"]]
+    plots: list[Plot | None] = [
+        residual_plots.at_a_glance(result),
+        residual_plots.against_time(parts, result["events"]),
+        residual_plots.against_temperature(parts),
+        residual_plots.deviations(
+            parts, residual_plots.fitted_noise(analysis), result["floor_mdps"]
+        ),
+        *effect_plots(analysis, names),
+    ]
+    slots = any(effect["coefficients"] for effect in result["effects"])
+    model = Path(folder) / "model.bin" if slots else None
+    total_s = sum(s.blocks * s.block_s for s in analysis.sessions)
+    try:
+        seen = moments(logs, model, max(60.0, total_s / _MOST_MOMENTS))
+        plots += [held_over_time(seen), inside(seen)]
+    except ZerorateError as problem:
+        notes.append(f"The estimators are not shown: {problem}.")
+    return [p for p in plots if p is not None], notes
