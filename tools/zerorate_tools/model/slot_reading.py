@@ -83,7 +83,7 @@ def _seconds(words: Sequence[int], at: int, tick_s: float) -> float:
     mantissa, shift = words[at : at + 2]
     if not mantissa:
         return 0.0
-    share = mantissa / 2 ** (15 + shift)
+    share = math.ldexp(mantissa, -15 - shift)  # a damaged shift makes no integer of its length
     return tick_s * 1e-3 if share >= 1 else -tick_s / math.log1p(-share)
 
 
