@@ -48,21 +48,21 @@ def shrink(
     scale: (S, A) noise of each session; own: which terms are shrunk, if not the play operators;
     alike: whether they are of one size on all axes, or each axis has its own.
     """
-    axes = [_Axis(g, scale[:, a], a) for a in range(scale.shape[1])]
-    groups = _groups(terms, axes[0].zz.shape[-1], own)
-    spans = [axes[0].spans(own, np.any(groups, axis=0)) for own in groups]
+    axes = _Axes(g, scale)
+    groups = _groups(terms, axes.zz.shape[-1], own)
+    spans = [axes.spans(own, np.any(groups, axis=0)) for own in groups]
     precisions, told, fitted = [], [], []
     for sizes in product(SIZES, *[SIZES[SIZES <= 1.0]] * (len(groups) - 1)):
         shares = np.cumprod(sizes)
         parts = [own * span / share for own, span, share in zip(groups, spans, shares)]
-        precision = np.sum([np.zeros(axes[0].zz.shape[-1]), *parts], axis=0)
-        each = [axis.fit(precision) for axis in axes]
+        precision = np.sum([np.zeros(axes.zz.shape[-1]), *parts], axis=0)
         precisions.append(precision)
-        told.append([t for t, _ in each])
-        fitted.append([c for _, c in each])
+        nats, coefficients = axes.fit(precision)
+        told.append(nats)
+        fitted.append(coefficients)
     likely = np.array(told)
     if alike:
-        likely = np.repeat(likely.sum(axis=1, keepdims=True), len(axes), axis=1)
+        likely = np.repeat(likely.sum(axis=1, keepdims=True), scale.shape[1], axis=1)
     weight = np.exp(likely - likely.max(axis=0))
     mean = np.einsum("sa,saj->ja", weight / weight.sum(axis=0), np.array(fitted))
     nats = likely.max(axis=0) + np.log(weight.mean(axis=0)) - likely[0]
@@ -85,37 +85,39 @@ def evidence(regression: Regression, terms: Terms, candidate: Terms) -> float:
     return shrink(regression.cross_products(every), regression.scale, every, own).nats
 
 
-class _Axis:
-    """Products of one axis over all sessions, by colour."""
+class _Axes:
+    """Products of each axis over all sessions, by colour: (axes, colours, ...)."""
 
-    def __init__(self, g: CrossProducts, scale: np.ndarray, axis: int) -> None:
-        w = 1.0 / scale**2
-        self.zz = np.tensordot(w, g.zz, 1)
-        self.zy = np.tensordot(w, g.zy[..., axis], 1)
-        self.yy = w @ g.yy[..., axis]
+    def __init__(self, g: CrossProducts, scale: np.ndarray) -> None:
+        weights = 1.0 / scale.T**2
+        self.zz = np.array([np.tensordot(w, g.zz, 1) for w in weights])
+        self.zy = np.array([np.tensordot(w, g.zy[..., a], 1) for a, w in enumerate(weights)])
+        self.yy = np.array([w @ g.yy[..., a] for a, w in enumerate(weights)])
         self.logdet, self.count = g.logdet.sum(axis=0), g.count.sum()
-        diagonal = np.einsum("gjj->j", self.zz)
-        self.tiny = TINY * diagonal + 1e-300
+        self.tiny = TINY * np.einsum("agjj->aj", self.zz) + 1e-300
 
     def spans(self, own: np.ndarray, plays: np.ndarray) -> float:
         """Sum of the variances of columns, less what all but play operators take of them."""
-        zz = self.zz[0] + np.diag(self.tiny)
+        zz = self.zz[0, 0] + np.diag(self.tiny[0])
         rest = zz[np.ix_(~plays, ~plays)]
         cross = zz[np.ix_(~plays, own)]
         taken = np.einsum("jk,jk->", cross, np.linalg.solve(rest, cross)) if len(rest) else 0.0
         return max((np.trace(zz[np.ix_(own, own)]) - taken) / self.count, 1e-300)
 
-    def fit(self, precision: np.ndarray) -> tuple[float, np.ndarray]:
-        """Log likelihood, and (J,) coefficients, over all colours."""
-        factor = np.linalg.cholesky(self.zz + np.diag(precision + self.tiny))
+    def fit(self, precision: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(A,) log likelihood, and (A, J) coefficients, over all colours."""
+        more = (precision + self.tiny)[:, :, None] * np.eye(len(precision))
+        factor = np.linalg.cholesky(self.zz + more[:, None])
         half = np.linalg.solve(factor, self.zy[..., None])[..., 0]
-        fitted = np.linalg.solve(factor.transpose(0, 2, 1), half[..., None])[..., 0]
-        left = np.maximum(self.yy - (half**2).sum(axis=1), 1e-300)
+        fitted = np.linalg.solve(factor.swapaxes(2, 3), half[..., None])[..., 0]
+        left = np.maximum(self.yy - (half**2).sum(axis=2), 1e-300)
         shrunk = precision > 0
         free = self.count - (~shrunk).sum()
         likely = 0.5 * np.log(precision[shrunk]).sum() - 0.5 * free * np.log(left)
-        likely -= np.log(np.einsum("gjj->gj", factor)).sum(axis=1) + 0.5 * self.logdet
-        likely += LOG_PRIOR[: len(likely)]
-        top = likely.max()
-        weight = np.exp(likely - top)
-        return float(top + np.log(weight.sum())), weight @ fitted / weight.sum()
+        likely -= np.log(np.einsum("agjj->agj", factor)).sum(axis=2) + 0.5 * self.logdet
+        likely += LOG_PRIOR[: likely.shape[1]]
+        top = likely.max(axis=1)
+        weight = np.exp(likely - top[:, None])
+        whole = weight.sum(axis=1)
+        mean = np.array([w @ c for w, c in zip(weight, fitted)]) / whole[:, None]
+        return top + np.log(whole), mean
