@@ -17,24 +17,23 @@ LEAST_OWN = 1e-6
 
 
 def _inverse(zz: np.ndarray) -> np.ndarray:
-    """(G, J, J) inverses of scaled cross products, safe against a column of nothing."""
-    j = zz.shape[-1]
-    d = np.sqrt(np.einsum("gjj->gj", zz))
+    """(A, G, J, J) inverses of scaled cross products, safe against a column of nothing."""
+    d = np.sqrt(np.einsum("agjj->agj", zz))
     d = np.where(d > 0, d, 1.0)
-    unit = zz / (d[:, :, None] * d[:, None, :]) + TINY * np.eye(j)
-    return np.linalg.inv(unit) / (d[:, :, None] * d[:, None, :])
+    square = d[..., :, None] * d[..., None, :]
+    return np.linalg.inv(zz / square + TINY * np.eye(zz.shape[-1])) / square
 
 
 @dataclass
 class Base:
     """The fit without candidates. rss: (A, G); loglik: (A, G); coefficients: (A, G, J); inverse:
-    (G, J, J) an axis; count: of all values fitted on an axis.
+    (A, G, J, J); count: of all values fitted on an axis.
     """
 
     rss: np.ndarray
     loglik: np.ndarray
     coefficients: np.ndarray
-    inverse: list[np.ndarray]
+    inverse: np.ndarray
     count: int
 
     @property
@@ -70,21 +69,15 @@ def _loglik(rss: np.ndarray, logdet: np.ndarray, count: int, scale_term: float) 
 
 def fit_base(g: CrossProducts, scale: np.ndarray) -> Base:
     """Fit of the nuisances. scale: (S, A) noise of each session."""
-    axes, count = g.yy.shape[2], g.count.sum()
-    logdet = g.logdet.sum(axis=0)
-    rss, ll, coef, inv = [], [], [], []
-    for a in range(axes):
-        w = 1.0 / scale[:, a] ** 2
-        zz = np.tensordot(w, g.zz, 1)
-        zy = np.tensordot(w, g.zy[..., a], 1)
-        inverse = _inverse(zz)
-        b = np.einsum("gij,gj->gi", inverse, zy)
-        r = w @ g.yy[..., a] - np.einsum("gi,gi->g", b, zy)
-        rss.append(r)
-        coef.append(b)
-        inv.append(inverse)
-        ll.append(_loglik(r, logdet, count, (g.count * np.log(scale[:, a])).sum()))
-    return Base(np.array(rss), np.array(ll), np.array(coef), inv, count)
+    count, logdet, weights = g.count.sum(), g.logdet.sum(axis=0), 1.0 / scale.T**2
+    inverse = _inverse(np.array([np.tensordot(w, g.zz, 1) for w in weights]))
+    zy = np.array([np.tensordot(w, g.zy[..., a], 1) for a, w in enumerate(weights)])
+    b = np.einsum("agij,agj->agi", inverse, zy)
+    yy = np.array([w @ g.yy[..., a] for a, w in enumerate(weights)])
+    rss = yy - np.einsum("agi,agi->ag", b, zy)
+    scaled = (g.count[:, None] * np.log(scale)).sum(axis=0)
+    ll = [_loglik(r, logdet, count, s) for r, s in zip(rss, scaled)]
+    return Base(rss, np.array(ll), b, inverse, count)
 
 
 def ratios(g: CrossProducts, base: Base, scale: np.ndarray) -> np.ndarray:
