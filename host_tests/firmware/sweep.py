@@ -16,7 +16,7 @@ from zerorate.storage.soundness import is_sound
 from zerorate_tools.layout import SETTINGS
 from zerorate_tools.replay.engines import others_of
 
-from .checked_c import CheckedLibrary
+from .checked import CheckedLibrary
 
 RAIL = 32767
 ROWS = 3000

@@ -9,7 +9,7 @@ from zerorate_tools.layout import STATE
 from zerorate_tools.replay.engines import others_of
 
 from . import trace
-from .checked_c import CheckedLibrary
+from .checked import CheckedLibrary
 from .sweep import attack
 from .trace_on_host import corrector_for, frames
 

@@ -19,7 +19,7 @@ from zerorate_tools.fleet.cluster import _safe_path, cluster, run_all
 from zerorate_tools.fleet.devices import here, size_and_change, urls_of
 from zerorate_tools.recordings import read_recording, write_recording
 
-from .conftest import DEVICES
+from .conftest import DEVICES, run_here
 
 #: What a machine has on which nobody installed zerorate.
 WITHOUT_ZERORATE = """
@@ -224,7 +224,8 @@ def gs(monkeypatch):
     server.stop()
 
 
-def test_a_folder_of_s3_gives_what_the_disk_gives(s3, data, done, tmp_path, capsys):
+def test_a_folder_of_s3_gives_what_the_disk_gives(s3, data, done, tmp_path, capsys, monkeypatch):
+    run_here(monkeypatch)
     s3.makedirs("fleet", exist_ok=True)  # a new server of this process has the same memory
     s3.put(str(data), "fleet/data", recursive=True)
     first = next(data.rglob("*.parquet"))
@@ -233,7 +234,7 @@ def test_a_folder_of_s3_gives_what_the_disk_gives(s3, data, done, tmp_path, caps
     s3.rm(f"{beside}/{first.name}")
     s3.put([str(tmp_path / "run.csv"), str(tmp_path / "run.json")], f"{beside}/")
     folder, out = "s3://fleet/data", tmp_path / "out"
-    words = ["fleet", folder, "--out", str(out), "--workers", "1", "--minutes", "1.5"]
+    words = ["fleet", folder, "--out", str(out), "--minutes", "1.5"]
     assert main(words) == 0
     report = json.loads((out / "fleet.json").read_text())
     assert (report["devices"], report["failures"]) == (DEVICES, [])

@@ -275,19 +275,17 @@ print(json.dumps([samples, took, 0]))
 """
 
 
-def replay_speed(
-    hours: Sequence[float] = HOURS, suffix: str = ".parquet", runs: int = RUNS
-) -> dict[str, dict[str, float]]:
+def replay_speed(hours: Sequence[float] = HOURS, runs: int = RUNS) -> dict[str, dict[str, float]]:
     """Hours at 100 Hz -> samples_per_s, kernel_samples_per_s and peak_bytes of a whole process.
 
     samples_per_s: recording in, Parquet out; kernel_samples_per_s: the kernels alone, frames in
     memory. Seconds are those of the processor, all threads together, the fewest of `runs`: what
-    other programs take on the same machine does not count. suffix: the recording's format.
+    other programs take on the same machine does not count.
     """
     with tempfile.TemporaryDirectory(prefix="zerorate-bench-") as folder:
-        first = Path(folder) / f"first{suffix}"
+        first = Path(folder) / "first.parquet"
         write_long(first, 0.01)
-        return {f"{h:g}": _one(Path(folder) / f"long{suffix}", first, h, runs) for h in hours}
+        return {f"{h:g}": _one(Path(folder) / "long.parquet", first, h, runs) for h in hours}
 
 
 def write_long(path: Path, hours: float) -> None:
