@@ -4,10 +4,10 @@
 const = int
 # layout: The state of the source in motion
 _MOTION_REASON = const(17)
-_ACCEPTED = const(65)
-_REFUSED = const(66)
-_MOTION_BIAS_Q8 = const(68)
-_MOTION_QUALITY_Q8 = const(71)
+_ACCEPTED = const(70)
+_REFUSED = const(71)
+_MOTION_BIAS_Q8 = const(73)
+_MOTION_QUALITY_Q8 = const(76)
 # layout: The state of the source against gravity
 _GRAVITY_BIAS_Q8 = const(28)
 _GRAVITY_QUALITY_Q8 = const(31)

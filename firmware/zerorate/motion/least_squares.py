@@ -1,13 +1,14 @@
-"""Bias, scale and axes by a window's rows: a Kalman filter of 15 states, one row at a time.
+"""Bias, scale and axes by a window's rows: a Kalman filter of 18 states, one row at a time.
 
 The hand's push is known no better than the bias, so all covariances are over the push's own
 variance, which the rows themselves tell (the conjugate prior of a linear model: normal and inverse
 gamma; Gelman 2013, 14.8). Its tails are Student's of four degrees of freedom, for no two windows
 are alike (Lange, Little and Taylor 1989): a row that lies far off weighs less.
 
-States: the bias, Q24 rad a node, nine entries of scale and axes by rows, Q24, and the bias of the
-accelerometer, Q24 g, which would pass for a tilt. _KNOWN is packed: column n of the upper triangle
-begins n (n + 1) / 2 words on.
+States: the bias, Q24 rad a node, nine entries of scale and axes by rows, Q24, the bias of the
+accelerometer, Q24 g, which would pass for a tilt, and the speed along the axes of the body, Q24 g
+nodes, which would pass for a bias while a walker turns. _KNOWN is packed: column n of the upper
+triangle begins n (n + 1) / 2 words on.
 """
 
 from ..arithmetic.real import add, copy, divide, multiply, pack, put, subtract, unpack
@@ -19,30 +20,30 @@ ptr32 = None
 _LENGTH = const(11)
 _STAGE = const(12)
 _MOTION_REASON = const(17)
-_ACCEPTED = const(65)
-_WINDOW_ROWS = const(83)
-_STRAY = const(163)
-_KNOWN = const(165)
-_MEAN = const(285)
-_PUSH = const(300)
-_ROWS_SEEN = const(302)
-_HELD_STRAY = const(303)
-_HEADING_FIT = const(305)
-_ROW_INNOVATION = const(307)
-_EXPECTED = const(309)
-_BIAS = const(311)
-_SLOPE = const(317)
-_T = const(323)
-_T1 = const(325)
-_T2 = const(327)
-_T3 = const(329)
+_ACCEPTED = const(70)
+_WINDOW_ROWS = const(88)
+_STRAY = const(202)
+_KNOWN = const(204)
+_MEAN = const(375)
+_PUSH = const(393)
+_ROWS_SEEN = const(395)
+_HELD_STRAY = const(396)
+_HEADING_FIT = const(398)
+_ROW_INNOVATION = const(400)
+_EXPECTED = const(402)
+_BIAS = const(404)
+_SLOPE = const(410)
+_T = const(416)
+_T1 = const(418)
+_T2 = const(420)
+_T3 = const(422)
 _G = const(32)
 _ROW_NOISE = const(24)
 _WITH = const(26)
 # layout: A row of a window in motion
 _SAID = const(0)
 _BY_BIAS = const(1)
-_ROW_WORDS = const(16)
+_ROW_WORDS = const(19)
 # layout: The settings of the source in motion
 _START_VARIANCE = const(14)
 _LONGEST = const(16)
@@ -51,12 +52,16 @@ _HEADING_SPREAD = const(21)
 _MATRIX_ERROR = const(26)
 _FORCE_ERROR = const(28)
 _PUSH_START = const(30)
+_SPEED = const(35)
 # layout: What a window in motion taught
 _TURNED = const(4)
 # layout: end
-_UNKNOWNS = const(15)
+_UNKNOWNS = const(18)
 _FIRST_FORCE = const(12)
+_FIRST_SPEED = const(15)
 _HEADING_ROW = const(2)
+_CLIMB_ROW = const(5)
+_CLIMB_BITS = const(-8)  # where the push is 50 mg, a climb of 0.05 m/s over a window
 # squares of .01, .05 and .3 rad, times a shape's 2.66 a half node: the least a heading strays, and
 # what it is taken to before a short and a full window has been seen
 _FLOOR_Q24 = const(4463)
@@ -80,7 +85,7 @@ def forget(s: ptr32, c: ptr32):
     while i < _UNKNOWNS:
         a = _START_VARIANCE if i < 3 else _MATRIX_ERROR
         if i >= _FIRST_FORCE:
-            a = _FORCE_ERROR
+            a = _FORCE_ERROR if i < _FIRST_SPEED else _SPEED
         put(s, _T, c[a], c[a + 1])
         pack(s, known(i, i), _T)
         i += 1
@@ -99,7 +104,12 @@ def known(i: int, j: int) -> int:
 def regressor(s: ptr32, d: int, r: int, j: int):
     """Store at d what state j adds to row r."""
     at = _WINDOW_ROWS + _ROW_WORDS * r + _BY_BIAS + j
-    put(s, d, s[at], s[_STAGE] - 15 if j < _FIRST_FORCE else -14)
+    if j < _FIRST_FORCE:
+        put(s, d, s[at], s[_STAGE] - 15)
+    elif j < _FIRST_SPEED:
+        put(s, d, s[at], -14)
+    else:
+        put(s, d, s[at], -s[_STAGE] - 13)
 
 
 def stray(s: ptr32, c: ptr32):
@@ -126,6 +136,8 @@ def row_noise(s: ptr32, c: ptr32, r: int):
     """Store row r's variance, over the push's, at _ROW_NOISE."""
     # Half a full window was seen before, so it counts half.
     k = s[_STAGE] - c[_SHORTEST_STAGE] - 3
+    if r == _CLIMB_ROW:
+        k = _CLIMB_BITS
     put(s, _ROW_NOISE, 1, k + 1 if k == 0 else k)
     if r == _HEADING_ROW:
         put(s, _T, c[_HEADING_SPREAD], 1 if k == 0 else 0)
@@ -203,6 +215,8 @@ def bear_outliers(s: ptr32):
 
 def follow_noise(s: ptr32, r: int):
     """Follow the push, or how the heading strays, by what row r's square at _T is beyond one."""
+    if r == _CLIMB_ROW:
+        return
     put(s, _T1, 1, 0)
     subtract(s, _T3, _T, _T1)
     if r == _HEADING_ROW:

@@ -7,7 +7,7 @@ from ..ratio import PI, Ratio
 # layout: names that a board's own compiler reads
 const = int
 # layout: The state of the source in motion
-_NODES_RING = const(353)
+_NODES_RING = const(443)
 # layout: The settings of the source in motion
 _NODE_US = const(0)
 _MOTION_GAIN = const(1)
@@ -36,10 +36,12 @@ _FORCE_ERROR = const(28)
 _PUSH_START = const(30)
 _USUAL = const(32)
 _LEAST_TILT = const(34)
-_MOTION_SETTINGS_WORDS = const(35)
+_SPEED = const(35)
+_MOTION_SETTINGS_WORDS = const(37)
 # layout: end
 _SPARE_NODES = 6
 _SHORT_GAP_US = 20000  # a hand turns by less than a tenth of a radian meanwhile
+_G_M_S2 = 9.80665
 # mean square of a row's shape, twice
 _SHAPE = 2.66
 
@@ -86,6 +88,7 @@ def motion_settings(
     heading_spread=11,
     matrix_error=0.01,
     accel_bias_g=0.005,
+    speed_m_s=0.3,
     usual_dps=0.5,
     least_dps=5.0,
     least_tilt_dps=0.3,
@@ -97,13 +100,14 @@ def motion_settings(
 
     odr_hz: samples a second; node_s: time of a node; longest_stage: the window is 2^that nodes;
     start_dps: one sigma of the bias before anything is known; walk_dps: its random walk a root
-    second; slope_dps_per_degc: one sigma of its slope over temperature, which grows as much again
-    over bend_degc; push_g: noise of the force in a row before any was seen; matrix_error: one sigma
-    of an entry of scale and axes, where the rows are as noisy as that; accel_bias_g: so of the bias
-    of the accelerometer; heading_spread: the variance of the heading's row over that of its noise
-    beside it; usual_dps: half of all parts have a smaller bias; least_dps: mean rate, of all axes
-    together, below which a window is not motion, unless it mostly tilts and by least_tilt_dps or
-    more. Raises ValueError.
+    second; slope_dps_per_degc: one sigma of its slope over temperature, which grows as much
+    again over bend_degc; push_g: noise of the force in a row before any was seen; matrix_error:
+    one sigma of an entry of scale and axes, where the rows are as noisy as that; accel_bias_g:
+    so of the bias of the accelerometer; speed_m_s: so of the body along its own axes;
+    heading_spread: the variance of the heading's row over that of its noise beside it;
+    usual_dps: half of all parts have a smaller bias; least_dps: mean rate, of all axes
+    together, below which a window is not motion, unless it mostly tilts and by least_tilt_dps
+    or more. Raises ValueError.
     """
     if not accel_lsb_per_g:
         raise ValueError("learning in motion needs an accelerometer")
@@ -153,6 +157,8 @@ def motion_settings(
     c[_START_VARIANCE], c[_START_VARIANCE + 1] = _real(_square(unit * start_dps) / push)
     c[_MATRIX_ERROR], c[_MATRIX_ERROR + 1] = _real(_square(Ratio(matrix_error) * (1 << 24)) / push)
     c[_FORCE_ERROR], c[_FORCE_ERROR + 1] = _real(_square(Ratio(accel_bias_g) * (1 << 24)) / push)
+    speed = Ratio(speed_m_s) / (node * _G_M_S2)
+    c[_SPEED], c[_SPEED + 1] = _real(_square(speed * (1 << 24)) / push)
     c[_USUAL], c[_USUAL + 1] = _real(_square(unit * usual_dps))
     c[_SETTLED] = (unit * settled_dps).floor()
     least_tilt_dps = least_dps if document else least_tilt_dps

@@ -15,7 +15,7 @@ _NODE_ELAPSED_US = const(0)
 _NODE_ANGLE_Q24 = const(2)
 _HEAD = const(8)
 _FILLED = const(9)
-_NODES_RING = const(353)
+_NODES_RING = const(443)
 # layout: The settings of the source in motion
 _NODE_US = const(0)
 _NODES = const(8)

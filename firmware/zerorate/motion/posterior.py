@@ -14,15 +14,15 @@ from .thermal import present
 const = int
 ptr32 = None
 # layout: The state of the source in motion
-_MOTION_BIAS_Q8 = const(68)
-_MOTION_QUALITY_Q8 = const(71)
-_MEAN = const(285)
-_PUSH = const(300)
-_SLOPE = const(317)
-_T = const(323)
-_T1 = const(325)
-_T2 = const(327)
-_T3 = const(329)
+_MOTION_BIAS_Q8 = const(73)
+_MOTION_QUALITY_Q8 = const(76)
+_MEAN = const(375)
+_PUSH = const(393)
+_SLOPE = const(410)
+_T = const(416)
+_T1 = const(418)
+_T2 = const(420)
+_T3 = const(422)
 # layout: The settings of the source in motion
 _LSB_A_UNIT = const(10)
 _MOTION_DOCUMENT = const(20)

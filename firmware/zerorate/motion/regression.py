@@ -1,4 +1,4 @@
-"""What a window says of its rates, and what an error of them adds to that, in five rows.
+"""What a window says of its rates, and what an error of them adds to that, in six rows.
 
 An error e of the rate turns the frame by the integral of R e, so a tilt or a heading y by one of
 its components. Under a bell w over the window that is, by parts, - integral w' y = integral w R e:
@@ -7,7 +7,12 @@ is as slow as the window. Two bells, (1 - t^2)^3 and 2 t (1 - t^2)^3, give two r
 tilts and one of the heading. The heading's second row, and a third shape, hold nothing of a bias
 in one pose: they measure how far the heading strays.
 
-A row is 16 words: what it says, then what the bias adds, and what the entries of scale and axes
+A speed v that is constant in the body adds the derivative of R v to the force, by parts the bell's
+second derivative times R v to each tilt. Where a walker turns by w it is w^2 v / g, whichever way
+he turns: 0.5 rad/s at 1.2 m/s are 1.8 dps about the axis across his way. The sixth row says that
+nobody climbs: the mean of R v along the vertical is zero.
+
+A row is 19 words: what it says, then what the bias adds, and what the entries of scale and axes
 add, by rows: R e with e of one axis, and that times each rate. A bias f of the accelerometer adds
 R f to the force, so a level component of it to each tilt.
 """
@@ -20,16 +25,19 @@ _HALF = const(18)
 _R = const(32)
 _BELLS = const(41)
 _SHAPES = const(43)
-_HALF_BEFORE = const(46)
-_Y = const(49)
-_WINDOW_ROWS = const(83)
-_STRAY = const(163)
+_CURVES = const(46)
+_HALF_BEFORE = const(48)
+_Y = const(51)
+_WINDOW_ROWS = const(88)
+_STRAY = const(202)
 # layout: A row of a window in motion
 _BY_BIAS = const(1)
 _BY_ENTRIES = const(4)
 _BY_FORCE = const(13)
-_ROW_WORDS = const(16)
+_BY_SPEED = const(16)
+_ROW_WORDS = const(19)
 # layout: end
+_CLIMB_ROW = const(5)
 
 
 def weights(s: ptr32, k: int, stage: int, document: int):
@@ -43,6 +51,8 @@ def weights(s: ptr32, k: int, stage: int, document: int):
     s[_BELLS + 1] = (2 * t * s[_BELLS]) >> 10
     s[_SHAPES] = t if document else (6 * t * falls) >> 10
     s[_SHAPES + 1] = (2 * (7 * square - 1024) * falls) >> 10
+    s[_CURVES] = (6 * rest * (5 * square - 1024)) >> 10
+    s[_CURVES + 1] = (((12 * t * rest) >> 10) * (7 * square - 3072)) >> 10
     s[_SHAPES + 2] = (((11 * t * falls) >> 10) * (3 * square - 1024)) >> 10
 
 
@@ -73,6 +83,10 @@ def row(s: ptr32, q: int, i: int, a: int):
         if i < 2:
             part = (s[_SHAPES + q] * s[_R + 3 - 3 * i + j] + 512) >> 10
             s[a + _BY_FORCE + j] += part if i else 0 - part
+            part = (s[_CURVES + q] * s[_R + 3 - 3 * i + j] + 512) >> 10
+            s[a + _BY_SPEED + j] += part if i else 0 - part
+        else:
+            s[_WINDOW_ROWS + _CLIMB_ROW * _ROW_WORDS + _BY_SPEED + j] += part
         j += 1
 
 

@@ -153,17 +153,13 @@ class Installer:
     def __init__(self, board: SerialTransport, port: str, say: Callable[[str], None]) -> None:
         self._board, self._port, self._say = board, port, say
         self._waiting: list[str] = []
-        # of a package, once asked: checksums take a board seconds
-        self._known: dict[str, dict[str, tuple[int, int]]] = {}
         text = files(__package__).joinpath("on_board/install.py").read_text(encoding="utf-8")
         self._do(text)
 
     def with_those_there(self, parts: tuple[str, ...], only: bool) -> tuple[str, ...]:
         """The parts with those that the board has, or, with only, without; says which."""
-        places = [f"{_LIBRARY}/{package}" for package in PACKAGES]
-        self._known = {place: self._there(place) for place in places}
-        names = [PurePosixPath(name) for place in places for name in self._known[place]]
-        there = parts_there(name.relative_to(_LIBRARY) for name in names)
+        names = [name for package in PACKAGES for name in self._there(f"{_LIBRARY}/{package}")]
+        there = parts_there(PurePosixPath(name).relative_to(_LIBRARY) for name in names)
         before = [part for part in chosen_parts(there) if part in there.difference(parts, {REST})]
         if before and only:
             self._say(f"removed, for it is not named: {', '.join(before)}")
@@ -209,7 +205,7 @@ class Installer:
         self, package: str, wanted: dict[PurePosixPath, bytes], flashed: Flashed
     ) -> None:
         place, stage = f"{_LIBRARY}/{package}", f"{_STAGE}/{package}"
-        there = self._known.pop(place) if place in self._known else self._there(place)
+        there = self._there(place)
         if there == {str(name): _mark(data) for name, data in wanted.items()}:
             for name, data in wanted.items():
                 self._tell(name, data, "the same already")
