@@ -143,9 +143,7 @@ def common_sources(sessions: list[Session]) -> list[str]:
 
 
 def block_basis(term: Term, session: Session) -> np.ndarray:
-    """(n,) mean over each block of the basis, kept where the term remembers: that takes longest."""
-    if term.memory == "none":
-        return _basis(term, session)
+    """(n,) mean over each block of the basis, kept: parts of a session are fitted in turn."""
     sources, basis = session.known.get(term, (None, None))
     if sources is not session.sources or basis is None:
         basis = _basis(term, session)
