@@ -20,9 +20,9 @@ from zerorate_tools.loop.read.ticks import read_ticks, tick_seconds
 from zerorate_tools.recordings import Recording, turning, write_recording
 from zerorate_tools.simulate import reference, simulate_sessions
 
-from . import arithmetic, fleets, moved, reported, resting, served, watched
+from . import fleets, moved, reported, resting, served, watched
 from .import_texts import TEXTS
-from .kernels import KERNELS
+from .kernels import KERNELS, arithmetic
 
 FILE = Path(__file__).with_name("known.json")
 
@@ -275,7 +275,7 @@ def moved_together():
 
 KNOWN = {
     "settings": settings,
-    "arithmetic": arithmetic.arithmetic,
+    "arithmetic": arithmetic,
     **KERNELS,
     "reported": reported.reported,
     "simulated": simulated,

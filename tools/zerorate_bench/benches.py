@@ -91,6 +91,9 @@ BENCHES = {
         *("errors of scale and axes in five kinds of simulated motion", "heading_simulated"),
         {"--devices": _number(80, "devices of each kind"), **_PROCESSES, **_RESUME},
     ),
+    "heading-size": Bench(
+        "time and memory of `close` in motion; exit code 1 if too much", "heading_size"
+    ),
     "import": Bench(
         *("logs of other tools: right or refused; exit code 1 if one is wrong", "foreign_imports"),
         {"--only": {"metavar": "TEXT", "default": "", "help": "logs whose row holds it"}},
