@@ -20,7 +20,8 @@ OWN = {"bias": 3, "drift": 3, "accel_bias": 3, "accel_shape": 5}
 OWN |= {"mounting": 3, "delay": 1, "velocity": 3, "lever": 3}
 _AT = np.cumsum([0, *OWN.values()])
 BIAS, DRIFT, ACCEL_BIAS, ACCEL_SHAPE, MOUNTING = (slice(a, b) for a, b in zip(_AT[:5], _AT[1:6]))
-#: Columns of what is neither a rate nor a delay.
+#: Columns of rates: the matrix, a bias and its drift; of what is neither a rate nor a delay.
+_RATES = MATRIX + OWN["bias"] + OWN["drift"]
 _NOT_RATES = sum(OWN.values()) - OWN["bias"] - OWN["drift"] - OWN["delay"]
 _SHAPED = OWN["accel_bias"] + OWN["accel_shape"]
 #: Standard deviations before a recording is seen: rad/s, rad/s a segment, g, share, s, m/s, m. A
@@ -114,24 +115,26 @@ def columns_of(moving: Moving, matrix: np.ndarray, own: np.ndarray) -> Columns:
     """
     per = max(1, round(1.0 / (_COLUMNS_HZ * moving.dt_s)))
     chunk, whole = per * _CHUNK, len(moving.rate) // per * per
-    attitude, theta, parts, offs = IDENTITY, np.zeros((3, MATRIX + 6)), [], []
+    attitude, turned, offs = IDENTITY, np.zeros((3, _RATES)), []
+    of_each = (3,), (3, _RATES + OWN["delay"]), (3, 3 + OWN["velocity"] + OWN["lever"])
+    seen, theta, added = (np.empty((whole // per, *shape)) for shape in of_each)
     back = rotation(-np.degrees(own[MOUNTING]))
     starts = list(range(0, whole - 1, chunk))  # one sample alone has no slope: it joins the last
     for first, end in zip(starts, [*starts[1:], whole]):
-        span = slice(first, end)
-        attitudes, steps, late, seen, added = _chunk_of(moving, span, per, attitude, matrix, own)
+        span, part = slice(first, end), slice(first // per, end // per)
+        attitudes, steps, late, *rest = _chunk_of(moving, span, per, attitude, matrix, own)
         attitude = attitudes[-1]
         if moving.given is not None:
             offs.append(_off(multiply(moving.given[span], back), attitudes, per))
-        ends = np.cumsum(steps[0], axis=0) + theta
+        ends = np.cumsum(steps[0], axis=0) + turned
         middle = ends - steps[0] + steps[1]
-        theta = ends[-1]
-        parts.append((seen, np.concatenate([middle, late], axis=2), added))
-    seen, theta, own = (np.concatenate(p) for p in zip(*parts))
+        turned = ends[-1]
+        theta[part] = np.concatenate([middle, late], axis=2)
+        seen[part], added[part] = rest
     step_s = per * moving.dt_s
     off = _bridged(np.concatenate(offs), step_s) if offs else None
     at, loud = np.arange(len(seen)) * per, _loud(seen, step_s)
-    return Columns(at, seen, loud, theta, own, off, step_s, moving.mounted)
+    return Columns(at, seen, loud, theta, added, off, step_s, moving.mounted)
 
 
 def _loud(seen: np.ndarray, step_s: float) -> np.ndarray:

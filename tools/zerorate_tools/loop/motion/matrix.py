@@ -266,7 +266,7 @@ def _left(f: Fitted, matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.nda
     if f.moving.given is None:
         upright = f.rows.errors + columns[..., MATRIX:] @ f.own
         left[:, :-1, 2] = upright[:, :-1, 2] ** 2
-    taken = np.einsum("wqap,pr,wqar->wqa", columns, inverse, columns, optimize=True)
+    taken = np.stack([((window @ inverse) * window).sum(axis=2) for window in columns])
     return left, taken, (f.own + step[MATRIX:]) ** 2 + np.diag(inverse)[MATRIX:]
 
 

@@ -66,7 +66,25 @@ def rows_of(moving: Moving, seconds: float, matrix: np.ndarray, own: np.ndarray)
     spans = moving.spans(seconds)
     if not spans:
         return None
-    columns = columns_of(moving, matrix, own)
+    found, headings, kinds = _measured(columns_of(moving, matrix, own), moving, spans, seconds)
+    if not headings:
+        return None
+    _, errors, of = (np.stack(part) for part in zip(*sorted(found, key=lambda f: f[0])))
+    counts = np.append(np.full(len(kinds) - 1, OVERLAP), 1.0)
+    band = np.append(kinds[:-1] / seconds // _BAND_HZ, -1)
+    bands = (band == np.unique(band)[:, None]) * 1.0
+    upright = 0 if moving.given is not None else kinds[-1] + 1
+    kinds = kinds[:, None] + [0, 0, upright]
+    heading = np.mean(headings, axis=0)
+    there = np.asarray(of.any(axis=(2, 3)))
+    return Rows(errors, of[..., :-3], of[..., -3:], there, kinds, counts, bands, heading)
+
+
+def _measured(
+    columns: Columns, moving: Moving, spans: list[slice], seconds: float
+) -> tuple[list[tuple[int, np.ndarray, np.ndarray]], list[np.ndarray], np.ndarray]:
+    """First step, errors (q, 3) and columns (q, 3, p + 3) of each window and turn between rests;
+    (9, 9) of each window as `Rows.heading`; (q,) number of each row's frequency."""
     long = int(seconds / columns.step_s)
     rows, kinds = tapers(long, seconds)
     rows, kinds = np.vstack([rows, np.zeros(long)]), np.append(kinds, kinds[-1] + 1)
@@ -78,19 +96,9 @@ def rows_of(moving: Moving, seconds: float, matrix: np.ndarray, own: np.ndarray)
             level = _level(seen) if moving.given is None else np.eye(3)
             found.append((first, rows @ seen @ level.T, level @ np.tensordot(rows, of, 1)))
             headings.append(_heading(columns, steps))
-    if not found:
-        return None
-    turns = _rests_beside_turns(columns, moving) if moving.given is None else []
+    turns = _rests_beside_turns(columns, moving) if headings and moving.given is None else []
     found += [(t[0][0], *_between(columns, moving, *t, len(rows))) for t in turns]
-    _, errors, of = (np.stack(part) for part in zip(*sorted(found, key=lambda f: f[0])))
-    counts = np.append(np.full(len(rows) - 1, OVERLAP), 1.0)
-    band = np.append(kinds[:-1] / seconds // _BAND_HZ, -1)
-    bands = (band == np.unique(band)[:, None]) * 1.0
-    upright = 0 if moving.given is not None else kinds[-1] + 1
-    kinds = kinds[:, None] + [0, 0, upright]
-    heading = np.mean(headings, axis=0)
-    there = np.asarray(of.any(axis=(2, 3)))
-    return Rows(errors, of[..., :-3], of[..., -3:], there, kinds, counts, bands, heading)
+    return found, headings, kinds
 
 
 def _rests_beside_turns(columns: Columns, moving: Moving) -> list[tuple[np.ndarray, np.ndarray]]:
