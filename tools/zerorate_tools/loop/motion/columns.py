@@ -109,7 +109,7 @@ def _apart(off: np.ndarray) -> np.ndarray:
 
 
 def columns_of(moving: Moving, matrix: np.ndarray, own: np.ndarray) -> Columns:
-    """What each error does to a recording, with the matrix and its own errors (18,) taken out.
+    """What each error does to a recording, with the matrix and its own errors (24,) taken out.
 
     Titterton and Weston 2004, 12.3: an error of the rate e turns the frame by the integral of R e.
     """
