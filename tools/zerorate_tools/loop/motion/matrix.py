@@ -7,6 +7,7 @@ The noise is the hand's acceleration: its spectrum comes from the residuals of e
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 from scipy.ndimage import uniform_filter1d
@@ -57,29 +58,42 @@ class Fitted:
         held = np.pad(self.folds == fold, 1)
         return self._of(matrix, ~(held[:-2] | held[1:-1] | held[2:]))
 
-    def normal(self, take: np.ndarray | slice) -> tuple[np.ndarray, np.ndarray]:
-        """(p, p) and (p,) normal equations of some windows, of its rests, and of what its own
-        errors were before."""
-        columns = self.rows.columns[take]
-        weighted = columns * (self.rows.counts[:, None] * self.precision[take])[..., None]
-        flat = weighted.reshape(-1, columns.shape[-1])
-        normal, right = (
-            flat.T @ columns.reshape(flat.shape),
-            flat.T @ self.rows.errors[take].ravel(),
-        )
+    def normal(self, take: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
+        """(p, p) and (p,) normal equations of some windows (w,), or of all, of its rests, and of
+        what its own errors were before."""
+        squares, rights = self._by_window
+        share = np.ones(len(rights)) if take is None else take * 1.0
+        normal, right = np.tensordot(share, squares, 1), share @ rights
         at = np.arange(MATRIX, len(right))
         normal[at, at] += self.likely
         right[MATRIX:] -= self.likely * self.own
-        for at_s, *rate in self.moving.rests:
-            design = np.zeros((3, len(self.own)))
-            design[:, BIAS], design[:, DRIFT] = np.eye(3), at_s * np.eye(3)
-            normal[MATRIX:, MATRIX:] += design.T @ design / REST_SIGMA**2
-            right[MATRIX:] += design.T @ (np.array(rate) - design @ self.own) / REST_SIGMA**2
+        rests, left = self._of_rests()
+        normal[MATRIX:, MATRIX:] += rests
+        right[MATRIX:] += left
         return normal, right
+
+    @cached_property
+    def _by_window(self) -> tuple[np.ndarray, np.ndarray]:
+        """(w, p, p) and (w, p) normal equations of each window."""
+        columns, errors = self.rows.columns, self.rows.errors
+        w, q, _, p = columns.shape
+        flat = columns.reshape(w, 3 * q, p)
+        weight = (self.rows.counts[:, None] * self.precision).reshape(w, 1, 3 * q)
+        weighted = flat.transpose(0, 2, 1) * weight
+        return weighted @ flat, (weighted @ errors.reshape(w, 3 * q, 1))[..., 0]
+
+    def _of_rests(self) -> tuple[np.ndarray, np.ndarray]:
+        """(p, p) and (p,) of its own errors alone: a rest shows the bias and its drift."""
+        at_s, rate = self.moving.rests[:, 0], self.moving.rests[:, 1:]
+        design = np.zeros((len(at_s), 3, len(self.own)))
+        design[:, :, BIAS] = np.eye(3)
+        design[:, :, DRIFT] = at_s[:, None, None] * np.eye(3)
+        flat = design.reshape(-1, len(self.own)) / REST_SIGMA
+        return flat.T @ flat, flat.T @ (rate.ravel() / REST_SIGMA - flat @ self.own)
 
     def own_beside(self, step: np.ndarray) -> np.ndarray:
         """By how much its own errors change where the entries do by a step (9,)."""
-        normal, right = self.normal(slice(None))
+        normal, right = self.normal()
         right = right[MATRIX:] - normal[MATRIX:, :MATRIX] @ step
         return np.linalg.solve(normal[MATRIX:, MATRIX:], right)
 
@@ -212,10 +226,10 @@ def _beside(
     fixed = moving.given is not None and not moving.mounted
     heading = rows.heading if fixed else _NO_TURN @ rows.heading @ _NO_TURN
     fitted = Fitted(moving, own, _WIDTH**-2.0, rows, np.ones(rows.errors.shape), folds, heading)
-    _weigh(fitted, matrix)
-    fitted.doubt = _contradiction(fitted, matrix)
-    fitted.precision = fitted.precision / fitted.doubt
-    return fitted
+    for _ in range(ROUNDS):
+        fitted = _weighed(fitted, matrix)
+    doubt = _contradiction(fitted, matrix)
+    return replace(fitted, doubt=doubt, precision=fitted.precision / doubt)
 
 
 def _contradiction(f: Fitted, matrix: np.ndarray) -> float:
@@ -225,21 +239,19 @@ def _contradiction(f: Fitted, matrix: np.ndarray) -> float:
     return max(1.0, float(np.mean(excess)) / MATRIX) if len(excess) > 1 else 1.0
 
 
-def _weigh(f: Fitted, matrix: np.ndarray) -> None:
-    """Set the precision of rows and of its own errors. A hand is now quiet and now loud: beside the
-    noise of each frequency each window and band has a loudness of its own (Student's t, by
-    expectation and maximisation: Lange, Little and Taylor 1989)."""
-    rows, weight = f.rows, np.ones(f.rows.errors.shape)
+def _weighed(f: Fitted, matrix: np.ndarray) -> Fitted:
+    """With the precision of rows and of its own errors once more. A hand is now quiet and now loud:
+    beside the noise of each frequency each window and band has a loudness of its own (Student's t,
+    by expectation and maximisation: Lange, Little and Taylor 1989)."""
+    rows = f.rows
     number = 2.0 * (rows.counts * rows.there) @ rows.bands.T
-    for _ in range(ROUNDS):
-        left, taken, own = _left(f, matrix)
-        free = rows.there[..., None] - np.minimum(taken * f.precision, 1.0)
-        f.noise = noise = _variances(rows, weight * left, free)[rows.kinds]
-        level = (rows.counts[:, None] * (left + taken) / noise)[..., :2].sum(axis=2)
-        quiet = (FREEDOM + number) / (FREEDOM + level @ rows.bands.T)
-        weight = (quiet @ rows.bands)[..., None]
-        f.precision = weight / noise
-        f.likely = _likely(own)
+    left, taken, own = _left(f, matrix)
+    free = rows.there[..., None] - np.minimum(taken * f.precision, 1.0)
+    noise = _variances(rows, f.precision * f.noise * left, free)[rows.kinds]
+    level = (rows.counts[:, None] * (left + taken) / noise)[..., :2].sum(axis=2)
+    quiet = (FREEDOM + number) / (FREEDOM + level @ rows.bands.T)
+    precision = (quiet @ rows.bands)[..., None] / noise
+    return replace(f, noise=noise, precision=precision, likely=_likely(own))
 
 
 def _likely(own: np.ndarray) -> np.ndarray:
@@ -257,7 +269,7 @@ def _left(f: Fitted, matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.nda
     """(w, q, 3) squares of what is left of rows, the variance of what the fit took there, and mean
     squares (p,) of its own errors. Pushes up and down go with strides, and an accelerometer's
     errors fit them: all that waves show of the vertical is left."""
-    normal, right = f.normal(slice(None))
+    normal, right = f.normal()
     normal[:MATRIX, :MATRIX] += np.eye(MATRIX) * SIZES[-1] ** -2
     right[:MATRIX] -= matrix.ravel() * SIZES[-1] ** -2
     inverse, columns = np.linalg.inv(normal), f.rows.columns

@@ -99,9 +99,16 @@ class Moving:
 
     def spans(self, seconds: float) -> list[slice]:
         """Windows of so many seconds, each a quarter on, that move, without gap or rail."""
-        n = round(seconds / self.dt_s)
-        spans = [slice(a, a + n) for a in range(0, len(self.rate) - n + 1, n // 4)] if n > 8 else []
-        return [s for s in spans if self._moves(s)]
+        if seconds not in self._spans:
+            n, end = round(seconds / self.dt_s), len(self.rate)
+            spans = [slice(a, a + n) for a in range(0, end - n + 1, n // 4)] if n > 8 else []
+            self._spans[seconds] = [s for s in spans if self._moves(s)]
+        return self._spans[seconds]
+
+    @cached_property
+    def _spans(self) -> dict[float, list[slice]]:
+        """By their seconds, as they are asked for again and again."""
+        return {}
 
     def _moves(self, s: slice) -> bool:
         spread = np.degrees(np.sqrt(self.rate[s].var(axis=0).sum()))
