@@ -232,6 +232,14 @@ def test_a_file_that_is_not_there_is_one_line_before_anything_is_written(option)
         flashing.flash("/dev/no-such-port", **{option: Path("nowhere")})
 
 
+@pytest.mark.parametrize("data", [b"imu = (", b"PAR1\0\xff"])
+def test_a_main_that_is_no_program_reaches_no_board(tmp_path, data):
+    path = tmp_path / "run.parquet"
+    path.write_bytes(data)
+    with pytest.raises(ZerorateError, match="run.parquet: no Python"):
+        flashing.flash("/dev/no-such-port", main=path)
+
+
 @pytest.mark.parametrize("version", [5, 7])
 def test_a_board_of_another_mpy_version_gets_the_source(version):
     found = compiling.board_files([REST], BoardFacts(mpy=(version, 0)))

@@ -230,6 +230,16 @@ def test_a_bias_that_is_not_known_has_no_sigma(log, capsys):
     assert "x none  y none  z none" in capsys.readouterr().out
 
 
+def test_where_nothing_came_it_is_an_error_that_says_what_to_do(log, capsys):
+    log.write_text(log.read_text().splitlines(keepends=True)[0])
+    board, port = os.openpty()
+    for source in ([str(log), "--once"], [os.ttyname(port), "--own", "--for", "0.1"]):
+        assert main(["watch", *source]) == 2
+        assert capsys.readouterr().err.startswith(f"zerorate: {source[0]}: ")
+    os.close(board)
+    os.close(port)
+
+
 def test_what_a_board_explains_is_read_as_the_firmware_means_it(log):
     live = watch(str(log), WatchOptions(once=True, settings=_RESTS))
     told = OwnOutput("/dev/ttyACM0")

@@ -12,6 +12,7 @@ from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
 from ..bounds import bytes_of
+from ..errors import InFile
 from .compiling import board_files, machine_code, mpy_version
 from .connection import BoardError, BoardFacts, ask, connected, output_of
 from .parts import PACKAGES, REST, chosen_parts, heap_needed, needs, parts_there
@@ -85,8 +86,17 @@ def _own_files(main: Path | None, model: Path | None) -> dict[PurePosixPath, byt
 
         found[PurePosixPath("model.bin")] = encoded(read_model(model))
     if main is not None:
-        found[_PROGRAM] = bytes_of(main, "name a program")
+        found[_PROGRAM] = _program(main)
     return found
+
+
+def _program(path: Path) -> bytes:
+    data, do = bytes_of(path, "name a program"), "name a program that the board can run"
+    try:
+        ast.parse(data, path.name)  # MicroPython's syntax is a part of Python's
+    except (SyntaxError, ValueError) as error:  # the latter for a byte of zero
+        raise InFile(path, f"no Python: {error}", do=do) from error
+    return data
 
 
 def _told(

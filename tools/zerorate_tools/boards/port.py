@@ -162,7 +162,10 @@ class BoardStream:
             # only when no more of it comes is its last line the one that says what is wrong
             raise BoardError(f"{self._port}: {said(self._tail.decode(errors='replace'))}")
         elif time.monotonic() - self._heard > _SILENCE_S:
-            raise BoardError(f"{self._port}: silent for {_SILENCE_S:.0f} s")
+            raise BoardError(
+                f"{self._port}: silent for {_SILENCE_S:.0f} s; press the board's reset, "
+                "check the chip's wires and the pins of --setup"
+            )
         return self._reader.feed(data)
 
 

@@ -134,6 +134,13 @@ def _made(out: Path, result: Any) -> int:
     return 0 if result.samples else 1
 
 
+#: With --own or not: what did not come, and what to do.
+_NOTHING_CAME = {
+    False: ("no sample came", "is its writer at work?"),
+    True: ("its program printed nothing", "zerorate flash PORT --main FILE puts one there"),
+}
+
+
 @command(
     "watch",
     "show live what is learned, from a board or a growing recording",
@@ -151,8 +158,8 @@ def _made(out: Path, result: Any) -> int:
     "until Ctrl-C. SOURCE is a growing .csv, as of `zerorate record`, the serial port of a board, "
     "/dev/i2c-N, or fake: for an emulated chip at rest.",
 )
-def run_watch(arguments: argparse.Namespace) -> int:
-    """Watch; 1 where no sample, or no line, ever came."""
+def run_watch(arguments: argparse.Namespace) -> None:
+    """Watch; an error where no sample, or no line, ever came."""
     if arguments.own and (arguments.model or arguments.setup):
         raise ZerorateError("--own leaves the board's program as it is; drop --model and --setup")
     from ..watch.screen import WatchOptions, check_picture, draw
@@ -167,10 +174,12 @@ def run_watch(arguments: argparse.Namespace) -> int:
         setup=text_of(arguments.setup, "name MicroPython source") if arguments.setup else "",
     )
     live = watch(arguments.source, options)
-    if live and arguments.plot:
+    if live is None:
+        came, do = _NOTHING_CAME[arguments.own]
+        raise ZerorateError(f"{arguments.source}: {came}; {do}")
+    if arguments.plot:
         draw(live, arguments.plot)
         print(arguments.plot)
-    return 0 if live else 1
 
 
 #: What opening says of a path that is something else, and stays so.
