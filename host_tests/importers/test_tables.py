@@ -280,6 +280,7 @@ def test_a_clock_that_is_set_back_is_refused(tmp_path):
 def test_a_counter_that_jumps_is_offered_as_the_time(tmp_path):
     frame = table(500).drop(columns="t_s").assign(seq=np.arange(500)).drop(range(100, 150))
     _, report = read(tmp_path, frame, options=COUNTED)
+    assert any("nothing in the log confirms it" in note for note in report.notes)
     (doubt,) = report.doubts
     assert "'seq' skips 50 samples: give --map t_us=seq:x10000 and not --hz" in doubt
     assert not read(tmp_path, frame[:100], options=COUNTED)[1].doubts
@@ -302,6 +303,9 @@ SECONDS = pd.Timestamp("2026-05-01") + pd.to_timedelta(np.arange(500) // 100, "s
         ({"delay (s)": 0.5, "Zeit (s)": np.arange(500) / 100}, "", 10_000),
         ({"delay (s)": 0.5, "uptime_ms": np.arange(500) * 10}, "", 10_000),
         ({"hhmmss.ms": CLOCK}, "", 10_000),
+        ({"iTOW": 137_649_000 + np.arange(500) * 10}, "", 10_000),
+        ({"uptime": np.arange(500) / 100}, "", 10_000),
+        ({"msec": np.arange(500) * 10}, "", 10_000),
         ({"sys_time": np.arange(500) / 100}, "", 10_000),
         ({"T (°C)": np.arange(500) / 5000, "Zeit (s)": np.arange(500) / 100}, "", 10_000),
         ({"gps_tow": 137_649 + np.arange(500) / 100}, "", 10_000),

@@ -80,7 +80,7 @@ def _by_turning(
     wanted: Mapping[str, Mapped], first: Mapping[str, np.ndarray], t_s: np.ndarray
 ) -> str | None:
     """The unit of rates in which they turn gravity as it is seen to turn."""
-    size = _turned(wanted, first, t_s)
+    size = gravity_turned(wanted, first, t_s)
     if size is None:
         return None
     rates = np.array([first[wanted[axis].column] for axis in GYRO])
@@ -90,7 +90,7 @@ def _by_turning(
     return None if unit == _AS_COUNTS else unit
 
 
-def _turned(
+def gravity_turned(
     wanted: Mapping[str, Mapped], first: Mapping[str, np.ndarray], t_s: np.ndarray
 ) -> Size | None:
     """The size of rates by which they turn gravity, if both are there and it tells."""
@@ -402,7 +402,7 @@ def _by_pace(
     turned = ""
     if len(likely) > 1:
         at = first[column] - first[column][0]
-        sizes = {u: _turned(wanted, first, at * TIME_S[u]) for u in likely}
+        sizes = {u: gravity_turned(wanted, first, at * TIME_S[u]) for u in likely}
         likely = {u: likely[u] for u, size in sizes.items() if size and rate_unit_of(size)}
         turned = ", and gravity turns with the rates"
     if len(likely) != 1:

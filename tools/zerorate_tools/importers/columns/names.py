@@ -51,11 +51,13 @@ _TIME = re.compile(
 )
 #: Of one sensor's rows: acc_time, t_gyro.
 _OF_ONE = re.compile("time(?:stamp)?$|^t(?:acc|gyr)")
+_CLOCK = re.compile("time|tow|tick|clock|clk|cycle|stamp|elapsed|epoch|secs?$|seconds?$")
 _STEP = re.compile("(?:d|delta)t(?:ime)?|timestep|(?:sampl(?:e|ing))?(?:interval|period)")
 _SEC = re.compile(r"(.*?)(nano|micro|milli|[num])?(?:secs?|seconds?)$")
 #: A column of a variable of a .mat.
 _ARRAY = re.compile(r"\[\d+\]$")
 _LAST_AXIS = re.compile(f".*{_AXIS}(?:axis)?$")
+_ANY_AXIS = re.compile(f".*{_AXIS}$")
 #: Of an array that is called by all its axes, or by nothing, too.
 _BARE = re.compile(f"(?:xyz|values?)?{_AXIS}(?:axis)?$")
 #: Of a quaternion; BNO08x's are called i j k real.
@@ -123,6 +125,14 @@ def bare_axes(names: list[str]) -> dict[str, str]:
     return {} if "w" in by_letter else next(iter(_groups(names, _BARE, "g")), {})
 
 
+def axes_apart(names: list[str]) -> list[dict[str, str]]:
+    """Columns that go together by their axis alone, whatever they are called: {gx, gy, gz: name}.
+    A quaternion's and those of another sensor's name are none."""
+    parts = {name for group in attitudes(names) for name in group.values()}
+    names = [n for n in _of_three(names) if n not in parts and not of_other_sensor(n)]
+    return _groups(names, _ANY_AXIS, "g")
+
+
 def of_other_sensor(name: str) -> bool:
     """Whether a name is that of a sensor other than a gyroscope."""
     return bool(_OTHER_SENSOR.search(name)) and "gyro" not in name.lower()
@@ -176,7 +186,7 @@ def is_step(name: str) -> bool:
 
 def is_clock(name: str) -> bool:
     """Whether a column is called as a time, or as a count of something's ticks."""
-    return bool(re.search("time|tick|clock|clk|cycle", spelled(name)))
+    return bool(_CLOCK.search(spelled(name)))
 
 
 def in_units_of_time(names: list[str]) -> list[str]:

@@ -98,7 +98,8 @@ def planned(
             do = "write seconds, or dates as 2026-05-01T12:00:00.250; or count the rows: --hz N"
             raise BadRecording(path, f"no time can be read from column {mapped.column!r}", do=do)
         if unit is None:
-            words = guesses.ready_words(target, wanted, first, t_s)
+            by_rate = target == TIME and table.said_hz
+            words = hz_words(table) if by_rate else guesses.ready_words(target, wanted, first, t_s)
             unknown[mapped.column] = asked.setdefault(kind_of(target), words)
         if unit == RAW:
             raw.add(kind_of(target))
@@ -227,10 +228,11 @@ def _split_time(table: Table) -> tuple[str, str, str] | None:
 def _time_column(table: Table) -> str | None:
     """Of the columns called as times the first in which one goes on: no day beside a time of it.
     Where that stands still, one that says its unit: no second beside its milliseconds. Where none
-    is called so, one of dates, or one in a unit of time that only grows."""
+    is called so, one of dates, in a unit of time, or called as some clock, that only grows."""
     found = usual.time_columns(table.names)
     if not found:
         other = [*sorted(table.calendar), *usual.in_units_of_time(table.names)]
+        other += filter(usual.is_clock, table.names)
         first = table.first_rows(list(dict.fromkeys(other))) if other else {}
         return next((name for name, values in first.items() if guesses.only_grows(values)), None)
     first = table.first_rows(found) if len(found) > 1 else {}
@@ -258,7 +260,9 @@ def _check_there(
         elif words := _offered(table, wanted, missing, "gyro" in units):
             do = f"if these are rates: {words}"
         why = f" ({table.notes[0]})" if usual.unnamed(table.names) and table.notes else ""
-        problem = f"no column for {', '.join(missing)}{why}"
+        taken = ", ".join(f"{name}={wanted[name].column}" for name in COLUMNS if name in wanted)
+        beside = f" beside {taken}" if taken else ""
+        problem = f"no column for {', '.join(missing)}{beside}{why}"
         raise BadRecording(path, problem, do=f"{do}, {_of(table)}")
 
 
@@ -305,10 +309,33 @@ def _offered(table: Table, wanted: Mapping[str, Mapped], missing: list[str], kno
     if usual.unnamed(table.names):
         likely = guesses.likely_columns(table) if not set(wanted) - {TIME} else []
         return " ".join(f"--map {shlex.quote(words)}" for words in likely)
-    bare = usual.bare_axes(table.names)
+    bare = usual.bare_axes(table.names) or _most_like_rates(table, wanted)
     habit = guesses.by_habit("gx", bare["gx"], table.names) if bare and not known else None
     unit = habit[0] if habit else None
     return " ".join(map_words(t, c, unit) for t, c in bare.items() if t in missing)
+
+
+def _most_like_rates(table: Table, wanted: Mapping[str, Mapped]) -> dict[str, str]:
+    """Of columns that only their axes name those by which gravity turns, else the first; where no
+    acceleration is known, none as long as gravity."""
+    taken = {column for mapped in wanted.values() for column in mapped.columns}
+    first = table.first_rows(table.names)
+    threes = [
+        three
+        for three in usual.axes_apart([name for name in table.names if name not in taken])
+        if "ax" in wanted
+        or not guesses.as_long_as_gravity([first[name] for name in three.values()])
+    ]
+    t_s = None
+    if TIME in wanted:
+        t_s = wanted[TIME].taken(first, TIME_S[guesses.likely_time(first[wanted[TIME].column])])
+
+    def left(three: dict[str, str]) -> float:
+        rates = {axis: Mapped(axis, column) for axis, column in three.items()}
+        size = None if t_s is None else guesses.gravity_turned({**wanted, **rates}, first, t_s)
+        return size.left if size else 1.0
+
+    return min(threes, key=left, default={})
 
 
 def divided_by(plan: Plan, kind: str, lsb: float) -> None:
@@ -326,7 +353,6 @@ def hz_words(table: Table) -> str:
         return f"--hz {table.said_hz:g} (as the file says)"
     others = [name for name in table.names if name != usual.temperature(table.names)]
     first = {} if usual.unnamed(others) else table.first_rows(others)
-    maybe = ""
     for name, values in first.items():
         if usual.is_step(name) and np.isfinite(values).any() and np.nanmedian(values) > 0:
             step = float(np.nanmedian(values))
@@ -338,12 +364,10 @@ def hz_words(table: Table) -> str:
             and steps.min() > 0
             and guesses.likely_units_of_time(float(np.median(steps)))
         ):
-            words = map_words(TIME, name, guesses.likely_time(values))
+            # whole numbers may count anything
             if (steps % 1).any() and not guesses.of_long_time(name):
-                return words
-            if not maybe and usual.is_clock(name):  # whole numbers may count anything
-                maybe = f", or {words} if it is a time"
-    return f"--hz, samples a second{maybe}"
+                return map_words(TIME, name, guesses.likely_time(values))
+    return "--hz, samples a second"
 
 
 def left_aside(plan: Plan, table: Table) -> list[str]:

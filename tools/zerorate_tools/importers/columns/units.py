@@ -50,11 +50,7 @@ _WRITTEN_BY_KIND = {
 }
 #: Whole names that tell a unit; T(°) is what WitMotion writes.
 _BY_NAME = {
-    "time": {
-        "micros": "us", "microseconds": "us",
-        "millis": "ms", "milliseconds": "ms", "seconds_elapsed": "s",
-        "__time": "s",
-    },
+    "time": {"seconds_elapsed": "s", "__time": "s", "itow": "ms"},
     "temp": {"t(°)": "degc"},
 }  # fmt: skip
 #: Turns a minute, degrees an hour, and so many of a unit: 0.1 dps.
@@ -93,9 +89,11 @@ def unit_in_name(target: str, column: str) -> str | None:
     if name in _BY_NAME.get(kind, {}):
         return _BY_NAME[kind][name]
     in_brackets = _BRACKETS.search(name)
-    if in_brackets:
-        units = _WRITTEN_BY_KIND[kind]
-        return next((u for u in units if re.fullmatch(_WRITTEN[u], in_brackets[1])), None)
+    if in_brackets or kind == "time" and len(name) > 1:  # a time is called millis, too
+        text, units = in_brackets[1] if in_brackets else name, _WRITTEN_BY_KIND[kind]
+        unit = next((u for u in units if re.fullmatch(_WRITTEN[u], text)), None)
+        if unit or in_brackets:
+            return unit
     return next((u for u, ending in _ENDINGS[kind].items() if ending.search(name)), None)
 
 

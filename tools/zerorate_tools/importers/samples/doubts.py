@@ -46,7 +46,8 @@ _Turns = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 def doubts(found: Gathered, plan: Plan, table: Table, scales: Scales, path: Path) -> list[str]:
-    """Sentences, of which each names what to do. Raises BadRecording for what cannot be true."""
+    """Sentences, of which each names what to do; a rate that nothing confirms is a note of `found`.
+    Raises BadRecording for what cannot be true."""
     _refuse_gravity(found.looked_at, plan, scales, path)
     _refuse_pace(found, plan, path)
     _refuse_coarse_channels(found.looked_at, plan, path)
@@ -68,6 +69,11 @@ def doubts(found: Gathered, plan: Plan, table: Table, scales: Scales, path: Path
         )
     if found.counted:
         out += _of_counters(table, plan, found.interval_us)
+        if times is None:
+            hz = 1e6 / found.interval_us
+            found.notes.append(
+                f"{hz:.4g} samples a second, as --hz says: nothing in the log confirms it"
+            )
     return [f"doubtful: {words}" for words in out]
 
 
