@@ -25,6 +25,7 @@ from zerorate_tools.boards.bus import stream_bus
 from zerorate_tools.boards.fake_chip import FakeBus
 from zerorate_tools.boards.recorder import Recorder, recorded
 from zerorate_tools.boards.recording import record, stream
+from zerorate_tools.cli import main
 from zerorate_tools.errors import InFile, ZerorateError
 from zerorate_tools.recordings import Recording, Scales, growing, read_recording
 from zerorate_tools.recordings.recording import GYRO
@@ -53,7 +54,7 @@ class Machine:
 
     def record(self, seconds=10, **options):
         options |= {"seconds": seconds, "time_source": self.clock}
-        return recorded("I2C", self.out, None, partial(stream_bus, self.bus, **options))
+        return recorded(self.out, None, partial(stream_bus, self.bus, **options))
 
     def columns(self):
         return read_recording(self.out).columns
@@ -157,7 +158,7 @@ def test_no_chip_writes_no_file(machine):
 
 def test_a_bus_that_fails_for_good_keeps_what_was_verified_and_says_so(machine):
     machine.at(5, lambda: machine.bus.fault("nack", times=None))
-    with pytest.raises(ZerorateError, match=r"I2C: .*; 4\d\d samples, .* are in .*run.parquet"):
+    with pytest.raises(ZerorateError, match=r"; 4\d\d samples, .* are in .*run.parquet"):
         machine.record(seconds=60)
     assert len(machine.columns()["gz"]) == pytest.approx(475, abs=25)
     assert machine.clock.now_us / 1e6 == pytest.approx(10.2, abs=0.3)  # 5 s of patience
@@ -291,9 +292,21 @@ def test_a_setting_no_part_can_take_is_one_line(tmp_path, monkeypatch):
         record("/dev/i2c-1", tmp_path / "run.csv", full_scale_dps=300)
 
 
+def test_a_chip_that_does_not_answer_is_told_with_its_bus(tmp_path, imu_bus, smbus, capsys):
+    imu_bus.devices.clear()
+    assert main(["record", "1", "--out", str(tmp_path / "run.csv")]) == 2
+    assert capsys.readouterr().err.startswith("zerorate: /dev/i2c-1: nothing answers")
+
+
 @pytest.mark.parametrize(
     ("name", "bus"),
-    [("/dev/i2c-1", "/dev/i2c-1"), ("12", 12), ("/dev/ttyACM0", 0), ("/dev/i2c-", 0), ("x1", 0)],
+    [
+        ("/dev/i2c-1", "/dev/i2c-1"),
+        ("12", "/dev/i2c-12"),
+        ("/dev/ttyACM0", 0),
+        ("/dev/i2c-", 0),
+        ("x1", 0),
+    ],
 )
 def test_a_number_is_a_bus_and_what_is_none_a_port(monkeypatch, name, bus):
     asked, refuse = [], mock.Mock(side_effect=OSError)

@@ -207,7 +207,7 @@ def test_a_port_is_recorded_and_streamed_as_its_frames_say(board, monkeypatch, t
 
     with pytest.raises(BoardError, match="are in .*run.csv") if ends else nullcontext():
         found = recorder.recorded(
-            "port", out, None, partial(port.stream_port, "port", setup="imu = 1", done=done)
+            out, None, partial(port.stream_port, "port", setup="imu = 1", done=done)
         )
         assert (found.samples, found.lost, found.part) == (len(read_recording(out)), 0, "MPU-6050")
     with pytest.raises(BoardError) if ends else nullcontext():

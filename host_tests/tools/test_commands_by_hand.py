@@ -23,7 +23,6 @@ NONE = SimpleNamespace(samples=0, resumed=0, report={"sessions": 0})
         ("fleet run.parquet --out o --json", "fleet.fleet", NONE),
         ("record 0 --out o.csv", "boards.recording.record", NONE),
         ("record fake: --out o.csv --guide", "boards.recording.record", NONE),
-        ("watch x.csv --plot p.png", "watch.watching.watch", None),
     ],
 )
 def test_1_says_that_nothing_came(stands_in, words, function, nothing, capsys):
@@ -151,7 +150,7 @@ def test_an_open_bus_is_closed_where_no_chip_answers_and_a_wrong_setting_is_one_
 def test_run_needs_the_folder_of_its_state_and_the_file_alone(serving, capsys):
     assert cli.main(["run", "fake:", "--state", "no/learned.bin"]) == 2
     assert not serving.service.called and capsys.readouterr().err.startswith("zerorate: no: ")
-    with open("learned.bin", "ab") as of_another:
+    with open("fake.bin", "ab") as of_another:
         fcntl.flock(of_another, fcntl.LOCK_EX)
         assert cli.main(["run", "fake:"]) == 2
     assert not serving.service.called and "another program" in capsys.readouterr().err

@@ -95,6 +95,7 @@ class CannotFetch(ZerorateError):
 _BUS = {
     errno.ENOENT: "; is I2C switched on (raspi-config)? `ls /dev/i2c-*` says which there are",
     errno.EACCES: "; let yourself in: sudo usermod -aG i2c $USER, and log in again",
+    errno.ENOTTY: "; this is no I2C bus, `ls /dev/i2c-*` says which there are",
 }
 #: What to do about any other file.
 _FILE = {

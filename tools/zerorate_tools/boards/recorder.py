@@ -72,9 +72,7 @@ Heard = Callable[[Scales], Callable[[Columns], None]]
 Take = Callable[[Scales], "Recorder"]
 
 
-def recorded(
-    source: str, out: Path, heard: Heard | None, stream: Callable[[Take], None]
-) -> Recorded:
+def recorded(out: Path, heard: Heard | None, stream: Callable[[Take], None]) -> Recorded:
     """Record into out what stream(take) streams; what had been verified when it failed is kept.
 
     Raises BoardError or, for a bus, ZerorateError where it fails on its way, and says what is kept.
@@ -96,7 +94,7 @@ def recorded(
         kept = made[0].result.kept(out)
         if isinstance(error, BoardError):
             raise BoardError(f"{error}; {kept}") from error
-        raise ZerorateError(f"{source}: {os_error_in_words(error)}; {kept}") from error
+        raise ZerorateError(f"{os_error_in_words(error)}; {kept}") from error
     return made[0].result
 
 

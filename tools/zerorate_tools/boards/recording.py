@@ -34,7 +34,7 @@ def record(
     check_output(out)
     how = _of_a_hand if port_or_bus == FAKE else stream
     streamed = partial(how, port_or_bus, seconds=seconds, **options)
-    return recorded(port_or_bus, Path(out), heard, streamed)
+    return recorded(Path(out), heard, streamed)
 
 
 def stream(port_or_bus: str, take: Take, *, seconds: float | None = None, **options: Any) -> None:
@@ -76,13 +76,17 @@ def _opened(bus: str) -> Iterator[Any]:
     """The bus; what the driver refuses is said in a line."""
     from zerorate_i2c.linux import LinuxI2C
 
+    path, i2c = f"/dev/i2c-{bus}" if bus.isdigit() else bus, None
     try:
-        i2c = LinuxI2C(int(bus) if bus.isdigit() else bus)
+        i2c = LinuxI2C(path)
+        yield i2c
     except ImportError as error:
         raise MissingLibrary("smbus2") from error
-    try:
-        yield i2c
     except ValueError as error:
-        raise ZerorateError(f"{bus}: {error}") from error
+        raise ZerorateError(f"{path}: {error}") from error
+    except OSError as error:  # smbus2 and the driver name no bus
+        error.filename = error.filename or path
+        raise
     finally:
-        i2c.close()
+        if i2c is not None:
+            i2c.close()

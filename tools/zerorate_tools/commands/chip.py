@@ -190,12 +190,7 @@ _NO_BUS = (errno.ENOTTY, errno.EISDIR, errno.ENOTDIR)
     "run",
     "correct continuously on a Linux board, as a service",
     option("bus BUS", "/dev/i2c-1, or fake: for an emulated chip", _bus),
-    option(
-        "--state FILE",
-        "file for what is learned (learned.bin)",
-        Path,
-        default=Path("learned.bin"),
-    ),
+    option("--state FILE", "file for what is learned (learned.bin; of fake: fake.bin)", Path),
     option("--socket FILE", "Unix socket for readers", Path),
     option("--udp HOST:PORT", "send datagrams, only to this machine"),
     option("--metrics HOST:PORT", "serve metrics for Prometheus"),
@@ -218,8 +213,10 @@ def run_run(arguments: argparse.Namespace) -> None:
     from ..host import store_file
     from ..service import Datagrams, FakeBus, Lines, Metrics, Service, Sink, System, UnixSocket
 
-    if not arguments.state.parent.is_dir():
-        raise InFile(arguments.state.parent, "no such folder", do="make it, or name another")
+    # what an emulated chip taught would be a wrong bias for the real one
+    state = arguments.state or Path("fake.bin" if arguments.bus == "fake:" else "learned.bin")
+    if not state.parent.is_dir():
+        raise InFile(state.parent, "no such folder", do="make it, or name another")
     options = _chip(arguments)
     model = _model_bytes(arguments.model) if arguments.model else b""
     fake = None
@@ -252,14 +249,14 @@ def run_run(arguments: argparse.Namespace) -> None:
         print(line, file=sys.stderr, flush=True)
 
     def stored_ago_s() -> float:
-        return time.time() - arguments.state.stat().st_mtime
+        return time.time() - state.stat().st_mtime
 
     sinks: list[Sink] = []
     if arguments.udp:
         sinks.append(Datagrams(arguments.udp, arguments.remote))
     if arguments.metrics:
         sinks.append(Metrics(arguments.metrics, arguments.remote))
-    storage = store_file(arguments.state)
+    storage = store_file(state)
     if arguments.socket:  # last: it leaves a file where another is refused
         sinks.append(UnixSocket(arguments.socket))
     # systemd ends a service with SIGTERM, a closed terminal with SIGHUP; Ctrl-C does the same
