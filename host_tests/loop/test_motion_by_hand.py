@@ -109,6 +109,16 @@ def test_a_recording_says_nothing_of_motion_without_turns_or_what_sees_them(tmp_
     assert fifteen is None and len(sixteen.rate) == 16 and sixteen.given is None
 
 
+def test_samples_at_the_end_of_an_accelerometers_range_are_in_no_window_and_it_is_said(tmp_path):
+    def clipped(columns):  # stored with more room, as an import of m/s2 does
+        return columns | {f"a{a}": columns[f"a{a}"].clip(-7400, 7400) for a in "xyz"}
+
+    free, railed = (moving_of(written(tmp_path, change)) for change in (dict, clipped))
+    beyond = (np.abs(free.accel) > 1.01 * np.abs(railed.accel).max()).any(axis=1)
+    assert beyond.any() and not railed.usable[beyond].any() and not free.railed
+    assert "run: " in railed.railed and "widen the range" in railed.railed
+
+
 def test_true_rates_beside_a_recording_are_an_attitude_where_most_are_known(tmp_path):
     def with_true_rates(columns):
         return without_acceleration(columns) | {f"ref_g{a}": columns[f"g{a}"] for a in "xyz"}

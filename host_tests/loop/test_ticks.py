@@ -65,8 +65,8 @@ def test_every_sample_at_the_limit_is_saturated(limit_dps):
 
 @pytest.mark.parametrize("rate_dps", [0.0, 30.0, 300.0])
 def test_rest_and_a_turntable_at_a_constant_rate_are_not_saturated(rate_dps):
-    rate = np.random.default_rng(2).normal(0.0, NOISE_DPS, (6000, 3))
-    rate[1000:5000, 2] += rate_dps
+    rate = np.random.default_rng(2).normal(0.0, NOISE_DPS, (60_000, 3))
+    rate[10_000:50_000, 2] += rate_dps
     assert saturated(rate).mean() < 0.001
 
 

@@ -132,7 +132,11 @@ def shown_in_motion(ticks: Sequence[Ticks], holdout: int | None) -> RateScale | 
     at = (len(every) - 1 if holdout is None else holdout) if len(every) > 1 else None
     train = [m for i, m in enumerate(every) if m is not None and i != at]
     held = [] if at is None else [m for m in [every[at]] if m is not None]
-    return by_windows(train, held)
+    shown = by_windows(train, held)
+    railed = [m.railed for m in (*train, *held) if m.railed]
+    if shown is None and railed:
+        raise CannotClose("; ".join(railed))
+    return shown
 
 
 def write_in_motion(

@@ -26,7 +26,7 @@ class RateScale:
     lost: degrees a minute by which the entries turn the heading, without and with what is deployed,
     by their posterior; heading: those lost against an attitude that was given, without and with the
     matrix of what was left out; worse: of that, or of what was fitted, where it forbids the matrix;
-    unused: names of recordings whose attitude shows less than gravity; by_others: of several
+    aside: sentences of what was left out; by_others: of several
     recordings without a holdout, what would be deployed by all but the one named.
     """
 
@@ -47,7 +47,7 @@ class RateScale:
     lost: tuple[float, float]
     heading: tuple[float, float] | None = None
     worse: tuple[float, float] | None = None
-    unused: tuple[str, ...] = ()
+    aside: tuple[str, ...] = ()
     by_others: Mapping[str, np.ndarray] = field(default_factory=dict)
 
     @property
@@ -63,9 +63,8 @@ class RateScale:
 
     @property
     def notes(self) -> list[str]:
-        """What an attitude forbids, or why it was not used, a sentence each."""
-        why = "gravity shows more of the axes than the reference given, which was left out"
-        said = [f"{', '.join(self.unused)}: {why}"] if self.unused else []
+        """What was left out, and what an attitude forbids, a sentence each."""
+        said = [*self.aside]
         if self.worse is not None:
             before, after = self.worse
             lost = f"heading would lose {after:.2f} degrees a minute against the attitude"
@@ -134,8 +133,11 @@ def by_windows(train: list[Moving], holdout: list[Moving]) -> RateScale | None:
     if shown is None:
         return None
     pairs = zip([*train, *holdout], [m for part in used for m in part])
-    unused = tuple(m.name for m, now in pairs if now is not m)
-    return replace(_judged_by_heading(shown, *used) if shown.found else shown, unused=unused)
+    unused = ", ".join(m.name for m, now in pairs if now is not m)
+    why = "gravity shows more of the axes than the reference given, which was left out"
+    aside = [f"{unused}: {why}"] if unused else []
+    aside += [m.railed for m in (*train, *holdout) if m.railed]
+    return replace(_judged_by_heading(shown, *used) if shown.found else shown, aside=tuple(aside))
 
 
 def _judged_by_heading(shown: RateScale, train: list[Moving], holdout: list[Moving]) -> RateScale:

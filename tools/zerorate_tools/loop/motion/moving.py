@@ -24,7 +24,7 @@ LEAST_DPS = 5.0
 #: Shares, of the mean square, of rates about other axes than the main one and of gravity beside its
 #: mean direction, below which a device turns about one axis in one pose: a tenth of it, rms.
 _PLANAR = 0.01
-_RAIL = 32767
+_RAIL, _MOST_RAILED = 32767, 0.01
 #: scipy's order of a quaternion.
 W_LAST = [1, 2, 3, 0]
 #: Of a recording whose rates spread by less no window moves.
@@ -67,6 +67,18 @@ class Moving:
         sample that is lost now and then is time all the same."""
         apart_s = np.diff(self.at_s)
         return float(apart_s[apart_s <= GAP * np.median(apart_s)].mean())
+
+    @property
+    def railed(self) -> str:
+        """How much is at the end of a sensor's range, in words; empty where hardly any is."""
+        share = 1.0 - float(self.usable.mean())
+        said = (
+            f"{self.name}: {100 * share:.0f} % of the readings are at the end of a sensor's range "
+        )
+        said += (
+            "and show nothing: move it gently, or widen the gyroscope's or accelerometer's range"
+        )
+        return said if share > _MOST_RAILED else ""
 
     @property
     def planar(self) -> bool:
@@ -172,7 +184,8 @@ def moving_of(path: AnyPath, ticks: Ticks | None = None) -> Moving | None:
     rate = gyro * np.radians(1.0) / opened.scales.gyro_lsb_per_dps
     if len(t_us) < 16 or np.degrees(rate.std(axis=0).max()) < _WORTH_READING_DPS:
         return None
-    clipped = (np.abs(np.hstack([gyro, accel])) >= _RAIL).any(axis=1) | saturated(gyro)
+    clipped = (np.abs(np.hstack([gyro, accel])) >= _RAIL).any(axis=1)
+    clipped |= saturated(gyro) | saturated(accel)
     t_us, put = evenly(t_us)
     rate, accel, usable = (
         put(rate),

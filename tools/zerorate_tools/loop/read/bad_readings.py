@@ -1,9 +1,9 @@
-"""Readings that are none: what the guard refuses, and rates at the end of the gyroscope's range."""
+"""Readings that are none: what the guard refuses, and those at the end of a sensor's range."""
 
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from scipy.ndimage import binary_opening, median_filter
+from scipy.ndimage import binary_opening, median_filter, uniform_filter1d
 
 from ...recordings.recording import COLUMNS, GYRO, TEMP, TIME
 
@@ -14,9 +14,10 @@ _SLOW_HZ = 2.0
 _LEAP_LSB = 400
 #: Steps in a row without the sensor's noise, each of this share of its usual step. Of white noise
 #: one of seven steps is so small, so five in a row stand by chance in one of 17,000 places; they
-#: count only near the largest rate, where there are few.
+#: count only near the largest reading, where there are few, and where steps about them are so many
+#: times the usual one: a device at rest reads the same for long.
 _STEPS, _SHARE = 5, 0.25
-_NEAR_LARGEST = 0.8
+_NEAR_LARGEST, _MOVES = 0.8, 4.0
 #: Usual steps that a range has at least: noise about a bias has no end of a range.
 _RANGE_STEPS = 50.0
 #: Samples over which a usual step is measured; the quietest tenth counts.
@@ -60,17 +61,19 @@ class BadReadings:
         return wrong
 
 
-def saturated(rate: np.ndarray) -> np.ndarray:
-    """(n,) bool: a rate, of (n, 3) in any unit, is at a level that the sensor does not exceed.
+def saturated(readings: np.ndarray) -> np.ndarray:
+    """(n,) bool: a rate or a force, of (n, 3) in any unit, is at a level that the sensor does not
+    exceed.
 
     Nothing is found where the noise is below the resolution.
     """
-    out = np.zeros(len(rate), bool)
-    steps = np.abs(np.diff(rate, axis=0))
+    out = np.zeros(len(readings), bool)
+    steps = np.abs(np.diff(readings, axis=0))
     usual = float(np.median(np.quantile(median_filter(steps, (_SPAN, 1)), _QUIETEST, axis=0)))
-    flat = binary_opening(steps < _SHARE * usual, np.ones((_STEPS, 1), bool))
+    moves = uniform_filter1d(steps.mean(axis=1, keepdims=True), _SPAN, axis=0) > _MOVES * usual
+    flat = moves & binary_opening(steps < _SHARE * usual, np.ones((_STEPS, 1), bool))
     flat = np.vstack([flat[:1], flat])
-    for values, still in zip(rate.T, flat.T):
+    for values, still in zip(readings.T, flat.T):
         least = max(_NEAR_LARGEST * np.abs(values).max(), _RANGE_STEPS * usual)
         for side in (1, -1):
             level = (side * values)[still & (side * values > least)]
