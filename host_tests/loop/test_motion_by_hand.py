@@ -116,7 +116,7 @@ def test_samples_at_the_end_of_an_accelerometers_range_are_in_no_window_and_it_i
     free, railed = (moving_of(written(tmp_path, change)) for change in (dict, clipped))
     beyond = (np.abs(free.accel) > 1.01 * np.abs(railed.accel).max()).any(axis=1)
     assert beyond.any() and not railed.usable[beyond].any() and not free.railed
-    assert "run: " in railed.railed and "widen the range" in railed.railed
+    assert "run: " in railed.railed and "end of a sensor's range" in railed.railed
 
 
 def test_true_rates_beside_a_recording_are_an_attitude_where_most_are_known(tmp_path):
