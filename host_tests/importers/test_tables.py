@@ -337,7 +337,7 @@ def test_the_time_is_found_among_columns(tmp_path, columns, mapping, step_us):
         *("imu.gyro.{}", "w{}", "gyr_{}", "AngVel{}", "Gyroscope_{}", "{}gyro", "Gy{}", "g{}_mean"),
         *("w_RS_S_{} [rad s^-1]", "raw_angular_rate_{}_rad_per_s", "{} (rad/sec)", "g{}_rad_s"),
         *("Gyro{}_left_leg", "gyro_{}_clean", "in_anglvel_{}", "{}_GYRO_OUT", "AngleRate{}"),
-        *("rot_rate_{}", "giro_{}"),
+        *("rot_rate_{}", "giro_{}", "Angular rate {}v", "Vélocité gyro {}"),
         *("{}-axis (rad/s)", "imu rate {} [radians per second]", "UncompGyro{}", "{}_rate"),
         *(
             "imu2_g{}",

@@ -20,6 +20,8 @@ _AT_ONCE = 4
 #: steps, which are as short as a second or so in a date.
 _CALENDAR_S, _STEP_OF_DATE_S = (1e9, 4.1e9), 1.5
 DEGC, _KELVIN = (-60.0, 130.0), (230.0, 400.0)
+#: A room's 18 degC in degF: so many degC are as rare as a die that is no warmer.
+_MAYBE_DEGF = 65.0
 #: The widest range of these sensors, and a little.
 FASTEST_DPS = 2050.0
 #: More is no bias of a sound sensor, and what spreads by so small a share is steady.
@@ -310,10 +312,10 @@ def _by_calendar(values: np.ndarray) -> tuple[str | None, str]:
 
 
 def _by_range(values: np.ndarray) -> tuple[str | None, str]:
-    least, most = np.quantile(values, [0.02, 0.98])
-    for unit, (low, high) in (("degc", DEGC), ("k", _KELVIN)):
-        if low <= least and most <= high and not (unit == "k" and are_whole(values)):
-            return unit, f"it is around {np.median(values):.4g}"
+    least, usual, most = np.quantile(values, [0.02, 0.5, 0.98])
+    is_degc = DEGC[0] <= least and most <= DEGC[1] and usual < _MAYBE_DEGF
+    if is_degc or _KELVIN[0] <= least and most <= _KELVIN[1] and not are_whole(values):
+        return "degc" if is_degc else "k", f"it is around {usual:.4g}"
     return None, ""
 
 

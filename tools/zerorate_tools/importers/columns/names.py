@@ -2,6 +2,7 @@
 
 import os
 import re
+import unicodedata
 
 from .units import RAW, unit_in_name, without_unit
 
@@ -26,7 +27,9 @@ _ACCEL = re.compile(
     + f"{_AXIS}{_MADE}{_NUMBER}$|^{_AXIS}(?:accelerometer|accel|accl|acc){_MADE}$"
 )
 #: Whose axis stands before a part of a body, say: GyroX_left_leg.
-_GYRO_OF = re.compile(rf".*(?:gyroscope|gyro|gyr|angvel){_AXIS}[a-z0-9]*$")
+_GYRO_OF = re.compile(
+    rf".*(?:gyroscope|gyro|gyr|angvel|angularvelocity|angularrate){_AXIS}[a-z0-9]*$"
+)
 _ACCEL_OF = re.compile(rf".*(?:accelerometer|acceleration|accel|acce|accl|acc){_AXIS}[a-z0-9]*$")
 #: Less gravity, or gravity as a filter has it: no measure of it.
 _FREE = re.compile(r".*(?:freeacc|useracc|linacc|(?<!including)gravity)|lacc")
@@ -72,9 +75,9 @@ _BROWSERS = dict(zip(("gx", "gy", "gz"), ("beta", "gamma", "alpha")))
 
 
 def spelled(name: str) -> str:
-    """A name without its unit, case and marks; [0] [1] [2] at its end are x y z."""
+    """A name without its unit, case, accents and marks; [0] [1] [2] at its end are x y z."""
     text = re.sub(r"\[([012])\]", lambda m: "xyz"[int(m[1])], name.strip().lower())
-    return re.sub(r"[^a-z0-9]", "", without_unit(text))
+    return re.sub(r"[\W_]", "", unicodedata.normalize("NFKD", without_unit(text)))
 
 
 def gyro_groups(names: list[str]) -> list[dict[str, str]]:
@@ -127,9 +130,10 @@ def bare_axes(names: list[str]) -> dict[str, str]:
 
 def axes_apart(names: list[str]) -> list[dict[str, str]]:
     """Columns that go together by their axis alone, whatever they are called: {gx, gy, gz: name}.
-    A quaternion's and those of another sensor's name are none."""
+    A quaternion's, those of another sensor's name, and turns and speeds are none."""
     parts = {name for group in attitudes(names) for name in group.values()}
     names = [n for n in _of_three(names) if n not in parts and not of_other_sensor(n)]
+    names = [name for name in names if not re.search("delta|angle|pos|vel", name.lower())]
     return _groups(names, _ANY_AXIS, "g")
 
 

@@ -312,20 +312,18 @@ def _offered(table: Table, wanted: Mapping[str, Mapped], missing: list[str], kno
     bare = usual.bare_axes(table.names) or _most_like_rates(table, wanted)
     habit = guesses.by_habit("gx", bare["gx"], table.names) if bare and not known else None
     unit = habit[0] if habit else None
-    return " ".join(map_words(t, c, unit) for t, c in bare.items() if t in missing)
+    return " ".join(map_words(t, c, unit) for t, c in bare.items() if t not in wanted)
 
 
 def _most_like_rates(table: Table, wanted: Mapping[str, Mapped]) -> dict[str, str]:
     """Of columns that only their axes name those by which gravity turns, else the first; where no
-    acceleration is known, none as long as gravity."""
+    acceleration is known, it is those as long as gravity, if any."""
     taken = {column for mapped in wanted.values() for column in mapped.columns}
     first = table.first_rows(table.names)
-    threes = [
-        three
-        for three in usual.axes_apart([name for name in table.names if name not in taken])
-        if "ax" in wanted
-        or not guesses.as_long_as_gravity([first[name] for name in three.values()])
-    ]
+    threes = usual.axes_apart([name for name in table.names if name not in taken])
+    force = {} if "ax" in wanted else next((t for t in threes if _is_force(t, first)), {})
+    out = {ax: force[gx] for ax, gx in zip(ACCEL, GYRO) if force}
+    wanted = {**wanted, **{axis: Mapped(axis, column) for axis, column in out.items()}}
     t_s = None
     if TIME in wanted:
         t_s = wanted[TIME].taken(first, TIME_S[guesses.likely_time(first[wanted[TIME].column])])
@@ -335,7 +333,12 @@ def _most_like_rates(table: Table, wanted: Mapping[str, Mapped]) -> dict[str, st
         size = None if t_s is None else guesses.gravity_turned({**wanted, **rates}, first, t_s)
         return size.left if size else 1.0
 
-    return min(threes, key=left, default={})
+    rates = min((three for three in threes if three is not force), key=left, default={})
+    return {**rates, **out} if rates else {}
+
+
+def _is_force(three: Mapping[str, str], first: Mapping[str, np.ndarray]) -> bool:
+    return guesses.as_long_as_gravity([first[name] for name in three.values()])
 
 
 def divided_by(plan: Plan, kind: str, lsb: float) -> None:
@@ -353,6 +356,7 @@ def hz_words(table: Table) -> str:
         return f"--hz {table.said_hz:g} (as the file says)"
     others = [name for name in table.names if name != usual.temperature(table.names)]
     first = {} if usual.unnamed(others) else table.first_rows(others)
+    maybe = []
     for name, values in first.items():
         if usual.is_step(name) and np.isfinite(values).any() and np.nanmedian(values) > 0:
             step = float(np.nanmedian(values))
@@ -364,10 +368,9 @@ def hz_words(table: Table) -> str:
             and steps.min() > 0
             and guesses.likely_units_of_time(float(np.median(steps)))
         ):
-            # whole numbers may count anything
-            if (steps % 1).any() and not guesses.of_long_time(name):
-                return map_words(TIME, name, guesses.likely_time(values))
-    return "--hz, samples a second"
+            if not guesses.counts_rows(values) and not guesses.of_long_time(name):
+                maybe.append(map_words(TIME, name, guesses.likely_time(values)))
+    return " or ".join([*maybe, "--hz, samples a second"])
 
 
 def left_aside(plan: Plan, table: Table) -> list[str]:
