@@ -60,7 +60,8 @@ def _steps(moving):
     columns = columns_of(moving, _MATRIX / 2, own)
     rows, fitted = rows_of(moving, 10.0, _MATRIX / 2, own), beside(moving, _MATRIX / 2)
     seen, added = columns.of(np.arange(150, 300))
-    read = {name: of for name, of in vars(moving).items() if not name.startswith("_")}
+    names = ("name", "rate", "accel", "at_s", "usable", "still", "offset", "rests", "given", "dt_s")
+    read = {name: getattr(moving, name) for name in (*names, "mounted")}
     found = {"moving": read, "columns": columns.__dict__, "rows": rows.__dict__}
     found["of"] = {"seen": seen, "added": added, "spans": [s.start for s in moving.spans(10.0)]}
     names = ("own", "precision", "noise", "likely", "folds", "heading", "doubt")

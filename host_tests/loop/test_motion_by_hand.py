@@ -117,6 +117,8 @@ def test_samples_at_the_end_of_an_accelerometers_range_are_in_no_window_and_it_i
     beyond = (np.abs(free.accel) > 1.01 * np.abs(railed.accel).max()).any(axis=1)
     assert beyond.any() and not railed.usable[beyond].any() and not free.railed
     assert "run: " in railed.railed and "end of a sensor's range" in railed.railed
+    seen = replace(railed, given=np.tile([1.0, 0.0, 0.0, 0.0], (len(railed.rate), 1)))
+    assert seen.usable[beyond].all() and not seen.railed, "beside an attitude no force is asked"
 
 
 def test_true_rates_beside_a_recording_are_an_attitude_where_most_are_known(tmp_path):
@@ -151,7 +153,7 @@ def test_heading_is_told_where_no_window_sees_the_attitude_throughout():
     given = integrate(np.degrees(rate), 0.02, IDENTITY)[:3002]
     given[137::200] = np.nan
     every, none = np.ones(3002, bool), np.zeros((3002, 3))
-    one = Moving("x", rate, none, at_s, every, ~every, np.zeros(3), np.zeros((0, 4)), given)
+    one = Moving("x", rate, none, at_s, every, every, ~every, np.zeros(3), np.zeros((0, 4)), given)
     before, after = heading_lost([(one, np.diag([0.0, 0.0, 0.01]))])
     assert before == pytest.approx(0.0, abs=1e-6) and 0.01 < after
     alone = one.part(slice(1800)), np.diag([0.0, 0.0, 0.01])

@@ -44,17 +44,19 @@ class Moving:
     """A recording as motion needs it.
 
     rate: (n, 3) rad/s less `offset` (3,), which is near the bias; accel: (n, 3) g; at_s: (n,) from
-    the recording's middle; usable, still: (n,) bool, no rail, at rest; rests: (k, 4) s and rad/s
-    less the offset; given: (n, 4) attitude, body to a frame that stands still, NaN where it was not
-    seen and free to change there, None where none is given; mounted: whether it is that of a body
-    whose axes are turned against the sensor's, which is no error of the sensor.
+    the recording's middle; turned, felt, still: (n,) bool, no rate, no force is at the end of its
+    range, at rest; rests: (k, 4) s and rad/s less the offset; given: (n, 4) attitude, body to a
+    frame that stands still, NaN where it was not seen and free to change there, None where none is
+    given; mounted: whether it is that of a body whose axes are turned against the sensor's, which
+    is no error of the sensor.
     """
 
     name: str
     rate: np.ndarray
     accel: np.ndarray
     at_s: np.ndarray
-    usable: np.ndarray
+    turned: np.ndarray
+    felt: np.ndarray
     still: np.ndarray
     offset: np.ndarray
     rests: np.ndarray
@@ -69,16 +71,19 @@ class Moving:
         return float(apart_s[apart_s <= GAP * np.median(apart_s)].mean())
 
     @property
+    def usable(self) -> np.ndarray:
+        """(n,) bool: what a window may hold. Beside an attitude no force is asked."""
+        return self.turned if self.given is not None else self.turned & self.felt
+
+    @property
     def railed(self) -> str:
         """How much is at the end of a sensor's range, in words; empty where hardly any is."""
         share = 1.0 - float(self.usable.mean())
-        said = (
+        words = (
             f"{self.name}: {100 * share:.0f} % of the readings are at the end of a sensor's range "
-        )
-        said += (
             "and show nothing: move it gently, or widen the gyroscope's or accelerometer's range"
         )
-        return said if share > _MOST_RAILED else ""
+        return words if share > _MOST_RAILED else ""
 
     @property
     def planar(self) -> bool:
@@ -102,7 +107,7 @@ class Moving:
 
     def part(self, span: slice) -> "Moving":
         """Of its samples."""
-        names = ("rate", "accel", "at_s", "usable", "still")
+        names = ("rate", "accel", "at_s", "turned", "felt", "still")
         parts = {n: getattr(self, n)[span] for n in names}
         at_s = parts["at_s"]
         inside = (self.rests[:, 0] >= at_s[0]) & (self.rests[:, 0] <= at_s[-1])
@@ -184,14 +189,10 @@ def moving_of(path: AnyPath, ticks: Ticks | None = None) -> Moving | None:
     rate = gyro * np.radians(1.0) / opened.scales.gyro_lsb_per_dps
     if len(t_us) < 16 or np.degrees(rate.std(axis=0).max()) < _WORTH_READING_DPS:
         return None
-    clipped = (np.abs(np.hstack([gyro, accel])) >= _RAIL).any(axis=1)
-    clipped |= saturated(gyro) | saturated(accel)
+    railed = [(np.abs(x) >= _RAIL).any(axis=1) | saturated(x) for x in (gyro, accel)]
     t_us, put = evenly(t_us)
-    rate, accel, usable = (
-        put(rate),
-        put(accel),
-        put(np.where(clipped, np.nan, 0.0)[:, None])[:, 0] == 0.0,
-    )
+    rate, accel = put(rate), put(accel)
+    turned, felt = (put(np.where(x, np.nan, 0.0)[:, None])[:, 0] == 0.0 for x in railed)
     ticks = ticks or read_ticks(path, TICK_S)
     still = still_ticks(ticks)
     rests = _rests(ticks, still)
@@ -202,7 +203,7 @@ def moving_of(path: AnyPath, ticks: Ticks | None = None) -> Moving | None:
     tick = ((t_us - ticks.start_us) / (ticks.tick_s * 1e6)).astype(np.int64)
     moving = Moving(
         *(opened.name, rate - offset, accel / (lsb_per_g or 1.0), (t_us - middle_us) * 1e-6),
-        *(usable, still[np.clip(tick, 0, len(still) - 1)], offset, rests),
+        *(turned, felt, still[np.clip(tick, 0, len(still) - 1)], offset, rests),
     )
     given = put(given)
     if reference.rates:
