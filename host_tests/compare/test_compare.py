@@ -154,6 +154,14 @@ def test_one_rest_judges_no_method_and_without_motion_the_log_is_refused(tmp_pat
     assert main(["compare", str(still)]) == 2
 
 
+def test_a_page_is_not_written_over_a_recording(drifting, tmp_path, capsys):
+    other = tmp_path / "other.parquet"
+    other.write_bytes(b"a recording that no page may replace")
+    assert main(["compare", str(drifting), "--out", str(other)]) == 2
+    assert "end the name in .html" in capsys.readouterr().err
+    assert other.read_bytes() == b"a recording that no page may replace"
+
+
 def test_the_page_needs_no_other_file(drifting, tmp_path, capsys):
     page = tmp_path / "page.html"
     assert main(["compare", str(drifting), "--out", str(page)]) == 0

@@ -2,8 +2,10 @@
 
 import re
 import shlex
+from copy import deepcopy
 from html.parser import HTMLParser
 from pathlib import Path
+from shutil import copytree
 
 import numpy as np
 import pytest
@@ -17,7 +19,7 @@ from zerorate_tools.model import effects
 from zerorate_tools.numbers import figure
 from zerorate_tools.recordings import open_recording
 from zerorate_tools.replay import replay
-from zerorate_tools.report import sentences
+from zerorate_tools.report import sentences, write_report
 from zerorate_tools.report.estimators import moments
 from zerorate_tools.report.page import deployment, plots_of
 from zerorate_tools.report.plot import thinned
@@ -100,6 +102,14 @@ class TestAnswers:
         whole = closed.result["in_all"]
         warned = '<p class="warning">' in closed.page.read_text()
         assert warned == (some(closed.result) and whole["after_mdps"] >= whole["before_mdps"])
+
+    def test_an_axis_that_an_effect_leaves_as_it_is_comes_with_the_reason(self, outcome, tmp_path):
+        closed = outcome("an effect")
+        result = deepcopy(closed.result)
+        result["effects"][0]["said"] += "; not corrected on y, where the error would grow"
+        folder = copytree(closed.folder, tmp_path / "closed")
+        page = write_report(closed.analysis, result, closed.logs, folder)
+        assert "<p>Not corrected on y, where the error would grow.</p>" in page.read_text()
 
 
 class TestHostileNames:

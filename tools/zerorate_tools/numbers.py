@@ -10,11 +10,12 @@ def figure(value: float) -> str:
     """Three significant digits: 26.3, 0.808, 1,240, 5.9 × 10⁻⁵."""
     if value == 0:
         return "0"
-    mantissa, _, exponent = f"{value:.2e}".partition("e")
-    size = int(exponent)
+    size = int(f"{value:.2e}".partition("e")[2])
     if _LEAST <= size < _MOST:
         return _minus(f"{value:,.{max(0, 2 - size)}f}")
-    return _minus(f"{float(mantissa):.2g}") + f" × 10{str(size).translate(_SUPERSCRIPTS)}"
+    mantissa, _, exponent = f"{value:.1e}".partition("e")  # 9.96e-5 has another one than above
+    power = str(int(exponent)).translate(_SUPERSCRIPTS)
+    return _minus(f"{float(mantissa):g}") + f" × 10{power}"
 
 
 def chance(p: float) -> str:

@@ -3,6 +3,7 @@
 import argparse
 from pathlib import Path
 
+from ..errors import InFile
 from ..progress import progress
 from .options import (
     JSON,
@@ -139,6 +140,8 @@ def run_compare(arguments: argparse.Namespace) -> None:
     from ..compare.show import NO_RESTS, in_motion, table, write_page
     from ..recordings.atomic import check_apart
 
+    if arguments.out is not None and arguments.out.suffix != ".html":
+        raise InFile(arguments.out, "the page is HTML", do="end the name in .html")
     check_apart([arguments.out], arguments.logs)
     with progress("comparing", len(arguments.logs) + 4) as advance:
         won = matrix_of(arguments.logs)

@@ -22,10 +22,10 @@ _HEAD = ("way", "error, deg/s", "heading lost, deg/min", "against the first rest
 #: A drawing in inches, at 10 points, for a desk and for a phone of 390 CSS pixels.
 _WIDE, _NARROW = (9.0, 4.5), (3.7, 4.4)
 _NOTE = (
-    "A rest shows the bias: the mean rate. Each way is asked 3 s before a rest begins what it "
-    "takes the bias for; the rest says how wrong that was (root mean square over later rests). "
-    "Rests of over a minute count as several. The Earth's rate, 0.25 deg/min at most, is in every "
-    "rest: what differs by less is no difference."
+    "The mean rate of a rest is its bias. The error is that of the bias which each way had 3 s "
+    "before the rest, as a root mean square over later rests. A rest of over a minute counts as "
+    "several. Every rest contains the Earth's rate, up to 0.25 deg/min: a smaller difference is "
+    "none."
 )
 NO_RESTS = (
     "No method was judged: the device never lay still twice. Leave it at rest for some seconds, "

@@ -96,7 +96,7 @@ def _arrays(path: Path, length: int, options: dict[str, object]) -> list[tuple[s
         if length == len(state) + sum(sizes[name] for name in others):
             return [("state", state), *((n, named_source(n, sizes[n])) for n in others)]
     problem = f"{4 * length} bytes where a state with these settings has {4 * len(state)}"
-    raise InFile(path, problem, do="name its settings with --set")
+    raise InFile(path, problem, do="name a state, or its settings with --set")
 
 
 def in_words(words: list[Word]) -> str:

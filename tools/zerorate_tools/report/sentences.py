@@ -210,6 +210,12 @@ def how_sure(effect: Report) -> str:
     )
 
 
+def uncorrected(effect: Report) -> str:
+    """On which axes it is not corrected, and why; empty where on all."""
+    _, known, axes = effect["said"].partition("not corrected on ")
+    return known + axes
+
+
 def found_in_short(result: Report) -> str:
     """One sentence on what was found."""
     names = [f"{title(s['effect'], s['sources'])} ({s['confidence']})" for s in result["effects"]]
