@@ -106,7 +106,7 @@ class TestAnswers:
     def test_an_axis_that_an_effect_leaves_as_it_is_comes_with_the_reason(self, outcome, tmp_path):
         closed = outcome("an effect")
         result = deepcopy(closed.result)
-        result["effects"][0]["said"] += "; not corrected on y, where the error would grow"
+        result["effects"][0]["said"] = "lag of temp; not corrected on y, where the error would grow"
         folder = copytree(closed.folder, tmp_path / "closed")
         page = write_report(closed.analysis, result, closed.logs, folder)
         assert "<p>Not corrected on y, where the error would grow.</p>" in page.read_text()
