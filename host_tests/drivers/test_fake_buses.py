@@ -98,7 +98,12 @@ def test_busio_needs_its_lock_and_reads_into_a_slice(bus):
 )
 def test_a_mark_with_wrong_words_says_which_are_right(words, said):
     with pytest.raises(ValueError, match=said):
-        chip_as_marked(words)
+        chip_as_marked(**words)
+
+
+def test_a_mark_without_a_name_is_refused_and_not_overlooked():
+    with pytest.raises(ValueError, match="takes names"):
+        chip_as_marked((1, 2, 3))
 
 
 def test_what_was_imported_before_and_what_is_imported_later_opens_the_fake(smbus):
@@ -124,6 +129,9 @@ def test_the_next_test_has_its_own_chip(smbus):
 def test_a_rate_of_other_than_three_axes_is_refused(rate):
     with pytest.raises(ValueError, match=re.escape(f"gyro_dps is {rate}; give three")):
         Physical(gyro_dps=rate)
+    chip = FakeMPU6050(Physical(gyro_dps=lambda seconds: rate))
+    with pytest.raises(ValueError, match=re.escape(f"gyro_dps is {rate}; give three")):
+        chip.step()
 
 
 def test_a_thread_s_transfer_waits_for_the_end_of_another_s(imu_bus, smbus):

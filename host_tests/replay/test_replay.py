@@ -91,6 +91,14 @@ def test_a_recording_cut_in_two_and_resumed_ends_in_the_same_state(simulated, re
     assert replay(second, from_state=state, resume=True).state == reference.state
 
 
+def test_a_state_is_not_written_over_the_scales_of_the_log(simulated, tmp_path):
+    write_recording(simulated[0], tmp_path / "run.csv")
+    scales = (tmp_path / "run.json").read_bytes()
+    with pytest.raises(InFile, match="run.json: would be written over"):
+        replay(tmp_path / "run.csv", state=tmp_path / "run.json")
+    assert (tmp_path / "run.json").read_bytes() == scales
+
+
 def test_a_new_power_on_knows_its_bias_from_the_first_sample(log, reference, tmp_path):
     state = tmp_path / "state.bin"
     state.write_bytes(reference.state)

@@ -36,11 +36,13 @@ def pytest_configure(config: pytest.Config) -> None:
 def imu_chip(request: pytest.FixtureRequest) -> FakeMPU6050:
     """A chip just powered that lies still; `mark.imu` says otherwise."""
     mark = request.node.get_closest_marker("imu")
-    return chip_as_marked(dict(mark.kwargs) if mark else {})
+    return chip_as_marked(*mark.args, **mark.kwargs) if mark else chip_as_marked()
 
 
-def chip_as_marked(words: dict[str, Any]) -> FakeMPU6050:
+def chip_as_marked(*unnamed: Any, **words: Any) -> FakeMPU6050:
     """The chip of a mark with these words. Raises ValueError."""
+    if unnamed:
+        raise ValueError(f"the mark imu takes names, as imu(gyro_dps=(1, 2, 3)), not {unnamed}")
     unknown = [name for name in words if name not in _CHIP_WORDS + _FELT]
     if unknown:
         known = ", ".join(_CHIP_WORDS + _FELT)

@@ -51,8 +51,11 @@ class Physical:
         now = self._seconds
         self._seconds += period_us / 1000000
         root_hz = bandwidth_hz**0.5 * self.noise
-        accel = self.accel_g(now) if callable(self.accel_g) else self.accel_g
-        gyro = self.gyro_dps(now) if callable(self.gyro_dps) else self.gyro_dps
+        accel, gyro = self.accel_g, self.gyro_dps
+        if callable(accel):
+            accel = _three("accel_g", accel(now))
+        if callable(gyro):
+            gyro = _three("gyro_dps", gyro(now))
         degc = self.temp_degc(now) if callable(self.temp_degc) else self.temp_degc
         words = []
         for value in accel:

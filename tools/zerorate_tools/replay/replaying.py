@@ -27,6 +27,7 @@ from ..model import encoded, read_model
 from ..model.files import sensor_for
 from ..recordings import Recording, open_recording
 from ..recordings.atomic import all_written_beside, check_apart
+from ..recordings.csv_format import scales_path
 from ..recordings.parquet_format import TableWriter
 from ..recordings.reading import OpenRecording
 from .engines import Outcome, engine, others_of
@@ -138,7 +139,8 @@ def replay(
     """
     if out is not None and Path(out).suffix != ".parquet":
         raise InFile(out, "a replay is written as Parquet", do="end the name in .parquet")
-    check_apart([out, state], [None if isinstance(log, Recording) else log, model])
+    given = [] if isinstance(log, Recording) else [log, scales_path(Path(log))]
+    check_apart([out, state], [*given, model])
     check_apart([out], [from_state])
     recording = log if isinstance(log, Recording) else open_recording(log, keep_gaps=True)
     corrector = corrector_for(recording, options or {})
