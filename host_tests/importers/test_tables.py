@@ -382,6 +382,14 @@ def test_usual_names_and_units_of_forces_are_known(tmp_path, name, size):
     assert recording.accel_g().mean(axis=0) == pytest.approx([0, 0, 1], abs=0.01)
 
 
+def test_a_device_that_zeroes_its_rates_at_rest_is_no_sensor_read_too_fast_and_it_is_said(tmp_path):
+    frame = table(2000)
+    frame.loc[frame.index % 100 < 40, RATES] = 0.0
+    recording, report = read(tmp_path, frame)
+    assert len(recording) == 2000 and told(report, "exactly 0 in 40 % of the rows, which hides")
+    assert not told(read(tmp_path, table(2000))[1], "exactly 0")
+
+
 @pytest.mark.parametrize("name", ["gyroRotation{}", "rotationRate.{}"])
 def test_rates_beside_the_acceleration_of_a_user_are_those_of_coremotion(tmp_path, name):
     frame = rates(["t_s", *map(name.format, "xyz"), *(f"userAcceleration.{a}" for a in "xyz")], 300)

@@ -37,6 +37,8 @@ _UNSHAKEN_G = 0.02
 _STILL = 3.0
 #: A damaged line was a sample, and took its time; so many are lines of another kind.
 _LOST = 0.05
+#: Noise of one step leaves all three at zero in a twentieth of the rows, if there is no bias.
+_HIDDEN = 0.2
 #: So much of a column goes on by one a row if it counts them.
 _COUNTS = 0.5
 #: A tenth of what a channel does may be lost by rounding.
@@ -60,7 +62,7 @@ def doubts(found: Gathered, plan: Plan, table: Table, scales: Scales, path: Path
         out += _of_axes(turns, plan) if turns else []
     else:
         out = _of_turning(times, found.counted, plan, scales, path)
-    out += _of_temperature(found.looked_at, plan)
+    out += _of_hidden_bias(found.looked_at) + _of_temperature(found.looked_at, plan)
     lost = sum(found.dropped.values()) - found.dropped[HELD]
     if found.counted and lost > _LOST * found.rows:
         out.append(
@@ -229,6 +231,16 @@ def _turns(seen: Columns, plan: Plan, scales: Scales) -> _Turns | None:
         no_rates, no_force = (np.full_like(of, np.nan) for of in (force, rates))
         rates, force = np.hstack([rates, no_rates]), np.hstack([no_force, force])
     return rates, force, t_us * 1e-6
+
+
+def _of_hidden_bias(seen: Columns) -> list[str]:
+    """Rates that are more often zero about all axes at once than noise of a step leaves them."""
+    rates = np.array([seen[axis] for axis in GYRO])
+    share = float((rates == 0).all(axis=0).mean())
+    if share < _HIDDEN:
+        return []
+    said = f"all three rates are exactly 0 in {100 * share:.0f} % of the rows"
+    return [f"{said}, which hides a bias: turn off what zeroes them, or narrow the range"]
 
 
 def _of_axes(turns: _Turns, plan: Plan) -> list[str]:

@@ -58,12 +58,13 @@ def gathered(
 
 def _are_held(rates: np.ndarray, t_us: np.ndarray) -> bool:
     """Whether rates often stand still and then change together while time goes on, as of a sensor
-    that is read faster than it measures. On a coarse scale each stands still by itself.
+    that is read faster than it measures. On a coarse scale each stands still by itself, and at
+    exactly zero a device holds them that hides its bias.
 
     rates: (3, n) of the first rows; t_us: (n,).
     """
     steps = np.diff(rates, axis=1)
-    goes_on = np.isfinite(steps).all(axis=0) & (np.diff(t_us) != 0)
+    goes_on = np.isfinite(steps).all(axis=0) & (np.diff(t_us) != 0) & rates[:, 1:].any(axis=0)
     changed = steps[:, goes_on] != 0
     if not changed.size:
         return False
@@ -337,7 +338,7 @@ class _Gathering:
             interval_us = pace.mean_us
             self.spool = self.spool.remade(clock.evened(self.spool, interval_us))
             self.kept = [self._some(n, columns) for n, columns in enumerate(self.spool)]
-            notes.append("time stamps come in bursts: samples are spread clock.evenly between them")
+            notes.append("time stamps come in bursts: samples are spread evenly between them")
         return interval_us, notes
 
     def _pace(self) -> clock.Pace:

@@ -80,7 +80,7 @@ def seen_in_words(before: float, unit: str) -> str:
     """What is left where motion shows no matrix. before: RMS of what turns windows, in the unit."""
     if unit == UNIT[GIVEN]:
         return f"the reference sees {before:.2f} {unit}"
-    return f"gravity sees {before:.2f} {unit}, the device's own acceleration among it"
+    return f"gravity sees {before:.2f} {unit}, the device's own acceleration included"
 
 
 #: Sigma of an entry above which the motion did not show it, a data sheet's 0.5 %; of an entry that
