@@ -336,7 +336,14 @@ def test_the_time_is_found_among_columns(tmp_path, columns, mapping, step_us):
     [
         *("imu.gyro.{}", "w{}", "gyr_{}", "AngVel{}", "Gyroscope_{}", "{}gyro", "Gy{}", "g{}_mean"),
         *("w_RS_S_{} [rad s^-1]", "raw_angular_rate_{}_rad_per_s", "{} (rad/sec)", "g{}_rad_s"),
-        *("Gyro{}_left_leg", "gyro_{}_clean", "in_anglvel_{}", "{}_GYRO_OUT", "AngleRate{}"),
+        *(
+            "Gyro{}_left_leg",
+            "gyro_{}_clean",
+            "gyro_uncalib_{}",
+            "in_anglvel_{}",
+            "{}_GYRO_OUT",
+            "AngleRate{}",
+        ),
         *("rot_rate_{}", "giro_{}", "Angular rate {}v", "Vélocité gyro {}"),
         *("{}-axis (rad/s)", "imu rate {} [radians per second]", "UncompGyro{}", "{}_rate"),
         *(
@@ -380,6 +387,33 @@ def test_usual_names_and_units_of_forces_are_known(tmp_path, name, size):
     force = {name.format(axis): table(300)[f"a{axis}_g"] * size for axis in "xyz"}
     recording, _ = read(tmp_path, table(300)[HEAD.split(",")].assign(**force))
     assert recording.accel_g().mean(axis=0) == pytest.approx([0, 0, 1], abs=0.01)
+
+
+@pytest.mark.parametrize("axes", [RATES, ["ax_g", "ay_g", "az_g"]])
+def test_a_number_that_stands_for_no_reading_on_three_axes_is_none(tmp_path, axes):
+    frame = table(2000)
+    frame.loc[7::500, axes] = -999.0
+    recording, report = read(tmp_path, frame)
+    assert len(recording) == 1996 and report.dropped.total() == 4
+    assert np.abs(recording.gyro_dps()).max() < 2 and np.abs(recording.accel_g()).max() < 2
+
+
+def test_dots_part_thousands_where_commas_are_decimal(tmp_path):
+    frame = table(300)
+    frame["gx_mdps"] = 5000 * frame.pop("gx_dps")
+    cells = frame.map(lambda v: f"{v:,.3f}".translate(str.maketrans(",.", ".,")))
+    recording, _ = read(tmp_path, cells.to_csv(index=False, sep=";"))
+    assert recording.gyro_dps()[:, 0] == pytest.approx(frame["gx_mdps"] / 1000, abs=0.01)
+
+
+def test_the_acceleration_on_the_left_goes_with_the_rates_on_the_left(tmp_path):
+    frame = table(300)
+    for side, size in (("l", 1.0), ("r", 1.1)):
+        for axis in "xyz":
+            frame[f"{side}_acc_{axis}_g"] = frame[f"a{axis}_g"] * size
+            frame[f"{side}_gyro_{axis}_dps"] = frame[f"g{axis}_dps"]
+    recording, _ = read(tmp_path, frame.drop(columns=[n for n in frame if n[0] in "ag"]))
+    assert recording.accel_g()[:, 2].mean() == pytest.approx(1.0, abs=0.01)
 
 
 def test_a_device_that_zeroes_its_rates_at_rest_is_no_sensor_read_too_fast_and_it_is_said(tmp_path):

@@ -81,7 +81,7 @@ log.csv("rows of several sensors: time,sensor,x,y,z", lambda w: _long(w, "gyro",
 log.csv("rows of several sensors, told by Android's numbers",
     lambda w: _long(w, "4", "1", "time,sensor_type,{xyz}"))
 log.csv("rows of several sensors without a line of names",
-    lambda w: _long(w, "GYRO", "ACC"), header=False)
+    lambda w: _long(w, "GYRO", "ACC").assign(accuracy=3), header=False)
 
 
 def _phyphox(world: World, **how: Any) -> dict[str, str]:

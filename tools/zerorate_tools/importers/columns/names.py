@@ -14,7 +14,7 @@ _NUMBER = r"\d?"
 _CHIP = r"(?:(?:bm[agi]|i[ai]m|icm|lis|lsm|mpu)\d[a-z0-9]*?)?"
 _GYRO = re.compile(
     r"(?:.*(?:gyroscope|gyrorotation|g[iy]ro|gyr|angularvelocity|ang(?:le|ular)?rate|angl?vel|rot(?:ation)?rate|omega|angular)"
-    rf"\d?{_CHIP}(?:uncalibrated|uncal|calibrated|corrected|unfilt|adc|raw|rad|data|rate|dps|dof|values?|v"
+    rf"\d?{_CHIP}(?:uncalibrated|uncalib|uncal|calibrated|corrected|unfilt|adc|raw|rad|data|rate|dps|dof|values?|v"
     r"|static|noise|sensor){0,2}"
     r"|(?:.*imu\d*|raw)?(?:gy|[wg]|wb|pqr|absr|rate|dps))"
     + f"{_AXIS}{_MADE}{_NUMBER}$|^{_AXIS}(?:gyroscope|gyro|gyr|rate){_MADE}$"
@@ -96,7 +96,13 @@ def gyro_groups(names: list[str]) -> list[dict[str, str]]:
 
 def accel_groups(names: list[str]) -> list[dict[str, str]]:
     """Columns that go together as acceleration with gravity in it: {ax, ay, az: name}."""
-    names = [name for name in _of_three(names) if not _FREE.match(spelled(name))]
+    every = {spelled(name) for name in names}
+    names = [
+        name
+        for name, text in zip(names, map(spelled, names))
+        if not _FREE.match(text) or text.startswith("l") and f"r{text[1:]}" in every  # on the left
+    ]
+    names = _of_three(names)
     groups = _groups(names, _ACCEL, "a") or _groups(_in_units_of("ax", names), _LAST_AXIS, "a")
     return groups or _groups(names, _ACCEL_OF, "a")
 

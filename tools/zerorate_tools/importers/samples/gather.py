@@ -211,6 +211,8 @@ class _Gathering:
         self.counts.signed(columns)
         columns = self._less(columns, *self._is_something(columns))
         columns = self._less(columns, *self._not_all_zero(columns))
+        for axes in (GYRO, ACCEL) if "ax" in columns else (GYRO,):
+            columns = self._less(columns, *self._not_filled(columns, axes))
         self.unfiltered.append(self._some(len(self.unfiltered), columns))
         columns = self._less(columns, *self._not_too_fast(columns))
         whole = np.isfinite([columns[name] for name in GYRO]).all(axis=0)
@@ -263,6 +265,15 @@ class _Gathering:
             return np.ones(len(columns[TIME]), bool), ""
         frame = np.array([columns[name] for name in (*GYRO, *beside)])
         return ~(frame == 0).all(axis=0), "all readings are zero"
+
+    def _not_filled(self, columns: Columns, axes: Sequence[str]) -> tuple[np.ndarray, str]:
+        """Not one number on three axes, larger than every other reading."""
+        three = np.array([columns[name] for name in axes])
+        same = (three == three[0]).all(axis=0)
+        others = np.abs(three[:, ~same])
+        most = others[np.isfinite(others)].max(initial=0.0) if not same.all() else np.inf
+        why = "one number on three axes, larger than all others, as -999 for no reading"
+        return ~(same & (np.abs(three[0]) > most)), why
 
     def _not_too_fast(self, columns: Columns) -> tuple[np.ndarray, str]:
         """Rates that no sensor of this kind measures: damaged, or in another unit than said."""

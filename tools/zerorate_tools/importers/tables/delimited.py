@@ -198,6 +198,8 @@ def _numbers(cells: pa.Array, name: str, form: Form) -> np.ndarray:
     if name in form.units:
         cells = pc.replace_substring_regex(cells, rf"\s*{re.escape(form.units[name])}\s*$", "")
     if form.decimal_comma:
+        whole = pc.match_substring_regex(cells, r"\.\d{3},")  # 1.234,5 is one number
+        cells = pc.if_else(whole, pc.replace_substring(cells, ".", ""), cells)
         cells = pc.replace_substring(cells, ",", ".")
     try:
         return pc.cast(cells, pa.float64()).to_numpy(zero_copy_only=False)

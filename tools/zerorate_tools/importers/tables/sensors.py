@@ -189,9 +189,10 @@ def _beside(table: Table, column: str, words: list[str]) -> Table:
     shared = _times(table, column)
     values = [name for name in table.names if name not in (*shared, column)]
     first = table.first_rows([column, *values])
-    if usual.gyro_groups(words) and len(own := _that_change(first, column)) == 1:
-        values = own  # beside a unit, say, or a number of the word
-    bare = usual.unnamed(table.names) and len(values) == len("xyz")
+    own, unnamed = _that_change(first, column), usual.unnamed(table.names)
+    if len(own) == (len("xyz") if unnamed else 1) and (unnamed or usual.gyro_groups(words)):
+        values = own  # beside a unit, say, a number of the word, or how accurate it is
+    bare = unnamed and len(values) == len("xyz")
     labels = dict(zip(values, "xyz" if bare else values))
     times = {("time" if bare else name): name for name in shared}
     is_sorted = bool(shared) and (np.diff(first[column]) != 0).sum() < len(words)

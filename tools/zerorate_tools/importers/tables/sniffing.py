@@ -28,7 +28,7 @@ _ONE_LINE = "print each sample on a line of its own, as 0.8,-0.5,0.3 or gx:0.8 g
 _DELIMITERS = (",", ";", "\t", "|", " ")
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$")
 _WITH_UNIT = re.compile(r"([-+]?[\d.,]+(?:[eE][-+]?\d+)?)\s*([^\d\s.,]\S*)$")
-_DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+([eE][-+]?\d+)?$")
+_DECIMAL_COMMA = re.compile(r"[-+]?\d*(?:\.\d{3})*,\d+([eE][-+]?\d+)?$")
 _ISO = r"\d{4}[-/]\d\d[-/]\d\d[T ]\d\d:\d\d|\d{8}T\d{6}"
 #: Words of a day before a time of the day, in any order: 01-May-2026, May 1, 2026, 0 days.
 DAY = rf"(?!{_ISO})(?:[a-z0-9]{{1,9}}[\s,./_-]+){{1,4}}(?=\d\d?:)"
