@@ -84,7 +84,7 @@ def test_a_guide_beside_the_recording_sees_what_one_that_waits_sees(tmp_path):
         bus, clock, _ = fake_chip.in_hand()
         with Guide(Silent(), waits=waits) as guide:
             streamed = partial(stream_bus, bus, seconds=30, time_source=clock, done=guide.done)
-            recorder.recorded("I2C", tmp_path / f"{waits}.parquet", guide.heard, streamed)
+            recorder.recorded(tmp_path / f"{waits}.parquet", guide.heard, streamed)
             seen[waits] = guide.known.seconds
     assert seen[True] == pytest.approx(30, abs=3) and 0 < seen[False] <= 30
 
