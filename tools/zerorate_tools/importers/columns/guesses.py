@@ -198,7 +198,9 @@ def _by_values(
         return [], RAW if counted else "", names if three else []
     lengths = [np.linalg.norm([values[name] for name in three], axis=0) for three in threes]
     found = [number for number, of in enumerate(units) if of == unit]
-    at = found[0]
+    room = ((n, (*range(n - 2), *range(n + 3, len(threes)))) for n in found)
+    # three that leave three others: one axis with gravity is as long with any two
+    at = next((n for n, rest in room if any(_beside(threes[m], order) for m in rest)), found[0])
     for number in found:  # a bias may be as long by chance, and is not as steady
         steadier = 2 * _spread(lengths[number]) < _spread(lengths[at])
         at = number if steadier and number >= at + len(GYRO) else at

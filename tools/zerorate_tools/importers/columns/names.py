@@ -60,7 +60,7 @@ _SEC = re.compile(r"(.*?)(nano|micro|milli|[num])?(?:secs?|seconds?)$")
 #: A column of a variable of a .mat.
 _ARRAY = re.compile(r"\[\d+\]$")
 _LAST_AXIS = re.compile(f".*{_AXIS}(?:axis)?$")
-_ANY_AXIS = re.compile(f".*{_AXIS}$")
+_ANY_AXIS = re.compile(f".*{_AXIS}$|{_AXIS}.+$")
 #: Of an array that is called by all its axes, or by nothing, too.
 _BARE = re.compile(f"(?:xyz|values?)?{_AXIS}(?:axis)?$")
 #: Of a quaternion; BNO08x's are called i j k real.

@@ -312,7 +312,8 @@ def _offered(table: Table, wanted: Mapping[str, Mapped], missing: list[str], kno
     bare = usual.bare_axes(table.names) or _most_like_rates(table, wanted)
     habit = guesses.by_habit("gx", bare["gx"], table.names) if bare and not known else None
     unit = habit[0] if habit else None
-    return " ".join(map_words(t, c, unit) for t, c in bare.items() if t not in wanted)
+    mapped = {t: (c, unit if t in missing else None) for t, c in bare.items() if t not in wanted}
+    return " ".join(map_words(t, *of) for t, of in mapped.items())
 
 
 def _most_like_rates(table: Table, wanted: Mapping[str, Mapped]) -> dict[str, str]:
@@ -321,16 +322,16 @@ def _most_like_rates(table: Table, wanted: Mapping[str, Mapped]) -> dict[str, st
     taken = {column for mapped in wanted.values() for column in mapped.columns}
     first = table.first_rows(table.names)
     threes = usual.axes_apart([name for name in table.names if name not in taken])
+    threes = [t for t in threes if all(len(np.unique(first[name])) > 1 for name in t.values())]
     force = {} if "ax" in wanted else next((t for t in threes if _is_force(t, first)), {})
     out = {ax: force[gx] for ax, gx in zip(ACCEL, GYRO) if force}
     wanted = {**wanted, **{axis: Mapped(axis, column) for axis, column in out.items()}}
-    t_s = None
-    if TIME in wanted:
-        t_s = wanted[TIME].taken(first, TIME_S[guesses.likely_time(first[wanted[TIME].column])])
+    time = wanted.get(TIME)
+    t_s = time and time.taken(first, TIME_S[guesses.likely_time(first[time.column])])
 
     def left(three: dict[str, str]) -> float:
         rates = {axis: Mapped(axis, column) for axis, column in three.items()}
-        size = None if t_s is None else guesses.gravity_turned({**wanted, **rates}, first, t_s)
+        size = t_s is not None and guesses.gravity_turned({**wanted, **rates}, first, t_s)
         return size.left if size else 1.0
 
     rates = min((three for three in threes if three is not force), key=left, default={})
