@@ -50,7 +50,8 @@ class _Tail:
 def _drawn(shown, what, *more):
     """Lines of what a part of a terminal 100 letters wide shows."""
     console = Console(width=100, file=io.StringIO())
-    shown(SimpleNamespace(update=lambda group, refresh: console.print(group))).show(what, *more)
+    area = SimpleNamespace(update=lambda group, refresh: console.print(group), console=console)
+    shown(area).show(what, *more)
     return [line.rstrip() for line in console.file.getvalue().splitlines()]
 
 

@@ -198,6 +198,21 @@ def test_a_terminal_too_narrow_for_the_numbers_gets_lines(monkeypatch):
             assert isinstance(shown, Lines) == is_narrow
 
 
+@pytest.mark.parametrize("columns", [70, 80, 200])
+def test_every_number_and_source_is_whole_on_a_terminal(recording, columns):
+    console = Console(file=StringIO(), force_terminal=True, width=columns, color_system=None)
+    live = Live("run", recording.scales, recording.column_names)
+    live.feed(recording.columns)
+    with RichLive(console=console, auto_refresh=False) as area:
+        Area(area).show(live, [])
+    table = [line for line in console.file.getvalue().splitlines() if line.startswith(" g")][-3:]
+    assert [line.split()[1:6] for line in table] == [
+        [*(f"{value[i]:+.3f}" for value in (live.rate_dps, live.left_dps, live.bias_dps))]
+        + [f"{live.quality_dps[i]:.3f}", live.source[i]]
+        for i in range(3)
+    ]
+
+
 def test_a_name_is_shown_letter_by_letter_on_a_terminal(recording):
     console = Console(file=StringIO(), force_terminal=True, width=120, color_system=None)
     live = Live("[red]run[/red]", recording.scales, recording.column_names)

@@ -15,9 +15,9 @@ from ..numbers import fixed
 from ..progress import redrawn
 
 _BARS = "▁▂▃▄▅▆▇█"
-_WIDTH = 24
-#: Columns of a terminal in which every number is whole, with the first letters of its source.
-_LEAST_COLUMNS = 70
+_MOST_BARS = 24
+#: Columns of a terminal that all takes but the bars, and with two of them.
+_WITHOUT_BARS, _LEAST_COLUMNS = 68, 70
 
 
 #: What is shown: a Live, or the OwnOutput of a board's own program, which has the same names.
@@ -68,40 +68,44 @@ class Area:
         from rich.text import Text
 
         # Text, not str: a file's name may hold what rich takes for markup
-        parts = [Text(printable(live.headline()), style="bold"), _table(live)]
+        parts = [
+            Text(printable(live.headline()), style="bold"),
+            _table(live, self._area.console.width),
+        ]
         parts += [Text(printable(line)) for line in [*live.conditions(), *_learning(live)]]
         parts += [Text(printable(note), style="yellow") for note in notes]
         parts.append(Text("Ctrl-C ends.", style="dim"))
         self._area.update(Group(*parts), refresh=True)
 
 
-def sparkline(values: np.ndarray) -> str:
-    """Up to 24 bars of a series, from its lowest to its highest value."""
+def sparkline(values: np.ndarray, most: int = _MOST_BARS) -> str:
+    """Bars of a series, so many at most, from its lowest to its highest value."""
     if not len(values):
         return ""
-    at = np.linspace(0, len(values) - 1, min(_WIDTH, len(values))).astype(int)
+    at = np.linspace(0, len(values) - 1, min(most, len(values))).astype(int)
     low, high = float(values.min()), float(values.max())
     share = (values[at] - low) / (high - low) if high > low else np.zeros(len(at))
     return "".join(_BARS[int(s * (len(_BARS) - 1) + 0.5)] for s in share)
 
 
-def _table(live: Shown) -> Any:
+def _table(live: Shown, columns: int) -> Any:
     from rich import box
     from rich.table import Table
     from rich.text import Text
 
-    table = Table(box=box.SIMPLE_HEAD)
+    table = Table(box=box.SIMPLE_HEAD, collapse_padding=True, pad_edge=False)
     for name in ("", "rate dps", "corrected", "bias dps", "± one sigma"):
         table.add_column(name, justify="right", no_wrap=True)
-    table.add_column("from")
-    table.add_column("bias of late")
+    table.add_column("from", no_wrap=True)
+    bars = min(_MOST_BARS, columns - _WITHOUT_BARS)
+    table.add_column("bias of late", no_wrap=True, overflow="crop", width=bars)
     past = np.array(live.history).reshape(-1, 3)
     for i, source in enumerate(live.source):
         signed = [fixed(v[i], 3, "+") for v in (live.rate_dps, live.left_dps, live.bias_dps)]
         unknown = source == "none" or np.isnan(live.quality_dps[i])
         sigma = "" if unknown else f"{live.quality_dps[i]:.3f}"
         named = Text(printable(source))
-        table.add_row(f"g{'xyz'[i]}", *signed, sigma, named, sparkline(past[:, i]))
+        table.add_row(f"g{'xyz'[i]}", *signed, sigma, named, sparkline(past[:, i], bars))
     return table
 
 
