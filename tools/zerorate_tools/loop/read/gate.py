@@ -64,9 +64,10 @@ def same_settings(ticks: list[Ticks]) -> None:
         for name, other in _settings(t).items():
             one = first[name]
             if not _alike(name, one, other):
+                ours, theirs = (f"{x:.4g}" if name == "odr_hz" else x for x in (other, one))
                 raise CannotClose(
-                    f"{t.name}: {name} is {other}, but {one} in {ticks[0].name}; sessions must be "
-                    f"of one device with one setting{_how_alike(name, one, other)}"
+                    f"{t.name}: {name} is {ours}, but {theirs} in {ticks[0].name}; sessions must "
+                    f"be of one device with one setting{_how_alike(name, one, other)}"
                 )
         if t.digest in seen:
             raise CannotClose(
