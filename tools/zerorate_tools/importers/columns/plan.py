@@ -327,7 +327,7 @@ def _most_like_rates(table: Table, wanted: Mapping[str, Mapped]) -> dict[str, st
     out = {ax: force[gx] for ax, gx in zip(ACCEL, GYRO) if force}
     wanted = {**wanted, **{axis: Mapped(axis, column) for axis, column in out.items()}}
     time = wanted.get(TIME)
-    t_s = time and time.taken(first, TIME_S[guesses.likely_time(first[time.column])])
+    t_s = time.taken(first, TIME_S[guesses.likely_time(first[time.column])]) if time else None
 
     def left(three: dict[str, str]) -> float:
         rates = {axis: Mapped(axis, column) for axis, column in three.items()}
