@@ -28,6 +28,9 @@ TENS = np.arange(0, 5000, 10)
 MINUTE = rates("second gx_dps gy_dps gz_dps minute".split(), 500)
 CLOCK = 141700 + np.r_[30:60:0.1, 100:160:0.1]
 TURNED = pd.DataFrame({"t_s": TENS / 1e3, "gx": np.sin(TENS), "gy": 0.0, "gz": np.cos(TENS)})
+#: Rates that are as long as 1 g, too.
+TWO_AS_LONG = table(500).iloc[:, :7].set_axis("t r_x r_y r_z s_x s_y s_z".split(), axis=1)
+TWO_AS_LONG.iloc[:, 1:4] *= 1.0 / (0.8 * np.sqrt(3.0))
 LISTS = pd.DataFrame({"t_s": np.arange(300) / 100, "pulse": 70, "gyro": "[0.8, -0.5, 0.3]"})
 
 
@@ -98,6 +101,7 @@ LISTS = pd.DataFrame({"t_s": np.arange(300) / 100, "pulse": 70, "gyro": "[0.8, -
          "rates: --map gx=xv .*--map ax=xa"),
         (lines(table(500)[[*HEAD.split(","), "az_g", "ax_g", "ay_g"]].to_numpy()), {},
          "--map ax=5:g --map ay=6:g --map az=7:g --map gx=2:dps"),
+        (TWO_AS_LONG, {}, "rates: --map gx=r_x .*--map ax=s_x"),
         (table(500).assign(temp_c=77.5).rename(columns={"temp_c": "temp"}), {},
          "unit of column 'temp' is not known; give --temp-unit degc .or k, degf"),
         (table(500).assign(t_s=range(500)).rename(columns={"t_s": "time"}), {},

@@ -211,6 +211,8 @@ COUNTED, BY_NUMBER = Options(hz=100.0), "t_us=1:s gx=2:dps gy=3:dps gz=4:dps"
         ([str(row.tolist()) for row in THREE], "gx=[0]:dps gy=[1]:dps gz=[2]:dps", COUNTED, 0),
         ([str(tuple(row)) for row in THREE.tolist()], "gx=[0]:dps gy=[1]:dps gz=[2]:dps", COUNTED,
          0),
+        ([str((1, tuple(row))) for row in THREE.tolist()],
+         "gx=[1][0]:dps gy=[1][1]:dps gz=[1][2]:dps", COUNTED, 0),
         ([row.format("[IMU DEBUG] ") for row in TAGGED], "", COUNTED, 0),
         ([row.format("[12:00:01.250]") for row in TAGGED], "", COUNTED, 0),
         (["rst:0x1 (POWERON_RESET)", "I (28) boot: ESP-IDF v5.1", *ESP],
@@ -238,7 +240,7 @@ COUNTED, BY_NUMBER = Options(hz=100.0), "t_us=1:s gx=2:dps gy=3:dps gz=4:dps"
         ([f"00> {row}" for row in ROWS], BY_NUMBER, None, 0),
         (TIMED, "'gx=gyro x:dps' 'gy=gyro y:dps' 'gz=gyro z:dps'", None, 0),
     ],
-    ids="comments commented-head no-head dicts unit yei lists tuples tag clock esp "
+    ids="comments commented-head no-head dicts unit yei lists tuples nested tag clock esp "
     "parted turns said labview split rows numbered movesense "
     "edge-impulse semicolons named-unit unit-beside settings cantools "
     "zephyr esp-idf coolterm segger clock-above".split(),
@@ -303,6 +305,7 @@ SECONDS = pd.Timestamp("2026-05-01") + pd.to_timedelta(np.arange(500) // 100, "s
         ({"delay (s)": 0.5, "Zeit (s)": np.arange(500) / 100}, "", 10_000),
         ({"delay (s)": 0.5, "uptime_ms": np.arange(500) * 10}, "", 10_000),
         ({"hhmmss.ms": CLOCK}, "", 10_000),
+        ({"t": [f"2026-05-01 {t.replace('.', ':')}" for t in CLOCK]}, "", 10_000),
         ({"iTOW": 137_649_000 + np.arange(500) * 10}, "", 10_000),
         ({"uptime": np.arange(500) / 100}, "", 10_000),
         ({"msec": np.arange(500) * 10}, "", 10_000),
@@ -335,7 +338,13 @@ def test_the_time_is_found_among_columns(tmp_path, columns, mapping, step_us):
     "name",
     [
         *("imu.gyro.{}", "w{}", "gyr_{}", "AngVel{}", "Gyroscope_{}", "{}gyro", "Gy{}", "g{}_mean"),
-        *("w_RS_S_{} [rad s^-1]", "raw_angular_rate_{}_rad_per_s", "{} (rad/sec)", "g{}_rad_s"),
+        *(
+            "w_RS_S_{} [rad s^-1]",
+            "Гироскоп {} (рад/с)",
+            "raw_angular_rate_{}_rad_per_s",
+            "{} (rad/sec)",
+            "g{}_rad_s",
+        ),
         *(
             "Gyro{}_left_leg",
             "gyro_{}_clean",
@@ -344,7 +353,7 @@ def test_the_time_is_found_among_columns(tmp_path, columns, mapping, step_us):
             "{}_GYRO_OUT",
             "AngleRate{}",
         ),
-        *("rot_rate_{}", "giro_{}", "Angular rate {}v", "Vélocité gyro {}"),
+        *("rot_rate_{}", "giro_{}", "Angular rate {}v", "Vélocité gyro {}", "giroscopio_{}"),
         *("{}-axis (rad/s)", "imu rate {} [radians per second]", "UncompGyro{}", "{}_rate"),
         *(
             "imu2_g{}",
@@ -369,7 +378,7 @@ def test_usual_names_and_units_of_rates_are_known(tmp_path, name):
     named |= dict.fromkeys(("{}_rate", "gyro_{}", "{}_rad_s"), ("roll", "pitch", "yaw"))
     axes = named.get(name, "xyz")
     frame = rates(["t_s", *map(name.format, axes)], 300)
-    is_named = "rad" in name
+    is_named = "rad" in name or "рад" in name
     frame.iloc[:, 1:] = np.radians(frame.iloc[:, 1:]) if is_named else frame.iloc[:, 1:]
     recording, _ = read(tmp_path, frame, units=None if is_named else {"gyro": "dps"})
     assert recording.gyro_dps().mean() == pytest.approx(0.8, abs=0.02)
@@ -380,7 +389,7 @@ def test_usual_names_and_units_of_rates_are_known(tmp_path, name):
     [
         ("accel_{}_ug", 1e6), ("imu1.fb{}", 9.80665), ("Corrected Accelerometer Vector {} (g)", 1),
         ("f_{}", 9.80665), ("acce_{} [m·s⁻²]", 9.80665), ("{}_ACCL_OUT (milli-g)", 1e3),
-        ("accelerationIncludingGravity.{}", 9.80665), ("GForce{}", 1),
+        ("accelerationIncludingGravity.{}", 9.80665), ("GForce{}", 1), ("acelerómetro_{}", 9.80665),
     ],
 )  # fmt: skip
 def test_usual_names_and_units_of_forces_are_known(tmp_path, name, size):

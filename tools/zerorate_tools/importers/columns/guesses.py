@@ -202,7 +202,7 @@ def _by_values(
     # three that leave three others: one axis with gravity is as long with any two
     at = next((n for n, rest in room if any(_beside(threes[m], order) for m in rest)), found[0])
     for number in found:  # a bias may be as long by chance, and is not as steady
-        steadier = 2 * _spread(lengths[number]) < _spread(lengths[at])
+        steadier = 2 * spread(lengths[number]) < spread(lengths[at])
         at = number if steadier and number >= at + len(GYRO) else at
     accel = [f"{axis}={name}:{unit}" for axis, name in zip(ACCEL, names[at : at + 3])]
     rate_unit = "rad/s" if unit == "m/s2" else "dps"
@@ -214,7 +214,7 @@ def _by_values(
     return accel, rate_unit, [] if rates is None else threes[rates]
 
 
-def _spread(lengths: np.ndarray) -> float:
+def spread(lengths: np.ndarray) -> float:
     """How wide the middle half of lengths is, as a share of the usual one."""
     low, usual, high = np.quantile(lengths, [0.25, 0.5, 0.75])
     return float((high - low) / usual) if usual else np.inf
@@ -222,7 +222,7 @@ def _spread(lengths: np.ndarray) -> float:
 
 def _is_field(lengths: np.ndarray, dps: float) -> bool:
     """Whether columns are always as long, and longer than a bias: as the earth's field is."""
-    return _spread(lengths) < STEADY and float(np.median(lengths)) * dps > BIAS_DPS
+    return spread(lengths) < STEADY and float(np.median(lengths)) * dps > BIAS_DPS
 
 
 def _beside(names: list[str], order: list[str]) -> bool:

@@ -13,14 +13,14 @@ _MADE = "(?:cal|raw|mean|avg|out)?"
 _NUMBER = r"\d?"
 _CHIP = r"(?:(?:bm[agi]|i[ai]m|icm|lis|lsm|mpu)\d[a-z0-9]*?)?"
 _GYRO = re.compile(
-    r"(?:.*(?:gyroscope|gyrorotation|g[iy]ro|gyr|angularvelocity|ang(?:le|ular)?rate|angl?vel|rot(?:ation)?rate|omega|angular)"
+    r"(?:.*(?:gyroscope|giroscopio|gyrorotation|g[iy]ro|gyr|angularvelocity|ang(?:le|ular)?rate|angl?vel|rot(?:ation)?rate|omega|angular)"
     rf"\d?{_CHIP}(?:uncalibrated|uncalib|uncal|calibrated|corrected|unfilt|adc|raw|rad|data|rate|dps|dof|values?|v"
     r"|static|noise|sensor){0,2}"
     r"|(?:.*imu\d*|raw)?(?:gy|[wg]|wb|pqr|absr|rate|dps))"
     + f"{_AXIS}{_MADE}{_NUMBER}$|^{_AXIS}(?:gyroscope|gyro|gyr|rate){_MADE}$"
 )
 _ACCEL = re.compile(
-    r"(?:.*(?:accelerometer|acceleration|accel|acce|accl|acc|acel|specificforce|gforce)"
+    r"(?:.*(?:accelerometer|acc?elerometr[eo]|acceleration|accel|acce|accl|acc|acel|specificforce|gforce)"
     rf"\d?{_CHIP}(?:uncalibrated|uncal|calibrated|smooth|adc|raw|data|dof|ms2|m?g|values?|v|vector|ln|wr|static"
     r"|noise|sensor|includinggravity){0,2}"
     r"|(?:.*imu\d*|raw)?(?:ac?|gf|fb?|abs))"
@@ -139,7 +139,7 @@ def axes_apart(names: list[str]) -> list[dict[str, str]]:
     A quaternion's, those of another sensor's name, and turns and speeds are none."""
     parts = {name for group in attitudes(names) for name in group.values()}
     names = [n for n in _of_three(names) if n not in parts and not of_other_sensor(n)]
-    names = [name for name in names if not re.search("delta|angle|pos|vel", name.lower())]
+    names = [n for n in names if not re.search("delta|angle|pos|vel", n.lower())]
     return _groups(names, _ANY_AXIS, "g")
 
 
@@ -246,7 +246,7 @@ def _with_letter(text: str, every: set[str]) -> str:
     stem, digit = text[:-1], text[-1:]
     from_one = {f"{stem}{n}" for n in range(5)} & every == {f"{stem}{n}" for n in (1, 2, 3)}
     at = ("123" if from_one else "012").find(digit)
-    return f"{stem}{'xyz'[at]}" if digit and at >= 0 else text
+    return f"{stem}{'xyz'[at]}" if stem and at >= 0 else text
 
 
 def _in_units_of(target: str, names: list[str]) -> list[str]:

@@ -323,7 +323,7 @@ def _most_like_rates(table: Table, wanted: Mapping[str, Mapped]) -> dict[str, st
     first = table.first_rows(table.names)
     threes = usual.axes_apart([name for name in table.names if name not in taken])
     threes = [t for t in threes if all(len(np.unique(first[name])) > 1 for name in t.values())]
-    force = {} if "ax" in wanted else next((t for t in threes if _is_force(t, first)), {})
+    force = {} if "ax" in wanted else _steadiest_force(threes, first)
     out = {ax: force[gx] for ax, gx in zip(ACCEL, GYRO) if force}
     wanted = {**wanted, **{axis: Mapped(axis, column) for axis, column in out.items()}}
     time = wanted.get(TIME)
@@ -338,8 +338,16 @@ def _most_like_rates(table: Table, wanted: Mapping[str, Mapped]) -> dict[str, st
     return {**rates, **out} if rates else {}
 
 
-def _is_force(three: Mapping[str, str], first: Mapping[str, np.ndarray]) -> bool:
-    return guesses.as_long_as_gravity([first[name] for name in three.values()])
+def _steadiest_force(
+    threes: list[dict[str, str]], first: Mapping[str, np.ndarray]
+) -> dict[str, str]:
+    """Of columns that are as long as gravity those whose length changes least; empty for none."""
+    read = [(three, [first[name] for name in three.values()]) for three in threes]
+    forces = [(three, of) for three, of in read if guesses.as_long_as_gravity(of)]
+    steadiest = min(
+        forces, key=lambda one: guesses.spread(np.linalg.norm(one[1], axis=0)), default=({}, [])
+    )
+    return steadiest[0]
 
 
 def divided_by(plan: Plan, kind: str, lsb: float) -> None:

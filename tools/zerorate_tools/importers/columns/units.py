@@ -16,7 +16,8 @@ TEMP_DEGC = {"degc": (1.0, 0.0), "c": (1.0, 0.0), "k": (1.0, -273.15), "degf": (
 RAW = "lsb"
 KINDS = {"t": "time", "g": "gyro", "a": "accel"}
 
-_RAISED = str.maketrans("⁻¹²", "-12")
+#: Digits that are raised, and the letters of рад/с, м/с² and сек.
+_PLAIN = str.maketrans("⁻¹²радмсек", "-12radmsec")
 _SEC = "(?:seconds?|secs?|s)"
 _PER_SEC = rf"(?:(?:[\s_]*(?:/|per)[\s_]*|_){_SEC}|[\s_*·.]{_SEC}\^?-1)"
 _SQUARED = r"(?:/s|\^?2|[\s_]*squared|[\s_]*/[\s_]*s)"
@@ -82,7 +83,7 @@ def units_of(target: str) -> tuple[str, ...]:
 
 def unit_in_name(target: str, column: str) -> str | None:
     """The unit that a column's own name ends with (gx_dps, ax [m/s2], temp_C), or None."""
-    name = _DENOMINATOR.sub(r"/\1", _INDEX.sub("", column.strip().lower().translate(_RAISED)))
+    name = _DENOMINATOR.sub(r"/\1", _INDEX.sub("", column.strip().lower().translate(_PLAIN)))
     kind = kind_of(target)
     if kind == "time" and (found := re.search("time([mun]s)$", name)):
         return found[1]

@@ -110,7 +110,9 @@ def _is_sample(line: bytes) -> bool:
         held = _loaded(line)
     except ValueError:
         return False
-    return isinstance(held, dict) or _is_numbers(held)
+    parts = held if isinstance(held, tuple) else ()  # which a program prints one in another
+    flat = [v for part in parts for v in (part if isinstance(part, tuple) else [part])]
+    return isinstance(held, dict) or _is_numbers(flat or held)
 
 
 def _is_numbers(held: Any) -> bool:

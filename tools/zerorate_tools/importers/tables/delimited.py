@@ -224,7 +224,7 @@ def seconds_of(cells: pa.Array) -> np.ndarray:
     text = text.str.replace(rf"(?i)^{DAY}|\[\w+]$|\s+(?:utc|gmt)$", "", regex=True).str.replace(
         ",", "."
     )
-    text = text.str.replace(r"^(\d\d?:\d\d:\d\d):(\d+)", r"\1.\2", regex=True)
+    text = text.str.replace(r"(\d\d?:\d\d:\d\d):(\d+)", r"\1.\2", regex=True)
     text = text.str.replace(r"^(\d\d?:\d\d\.)", r"0:\1", regex=True)
     text = text.str.replace(r"\s+([+-]\d\d:?\d\d)$", r"\1", regex=True)
     if text.str.match(r"\d\d?:").any():
