@@ -89,6 +89,12 @@ def test_the_headline_is_held_out_before_after_and_floor_then_the_board(closed, 
     assert why_both(r) in closed.page.read_text()
 
 
+def test_an_effect_in_two_slots_is_named_once_in_the_headline(outcome):
+    result = deepcopy(outcome("an effect").result)
+    result["effects"] *= 2
+    assert headline(result) == headline(outcome("an effect").result)
+
+
 def test_it_is_one_file_of_less_than_six_megabytes(closed):
     text = closed.page.read_text(encoding="utf-8")
     assert closed.page.stat().st_size < 6_000_000

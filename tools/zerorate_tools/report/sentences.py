@@ -137,7 +137,8 @@ def on_held_out(result: Report) -> str:
     whole = result["in_all"]
     before, after, floor = (figure(whole[k]) for k in ("before_mdps", "after_mdps", "floor_mdps"))
     unexplained = result["verdict"] == "unexplained-residual"
-    names = [title(e["effect"], e["sources"]) for e in result["effects"] if corrects_at_rest(e)]
+    found = [title(e["effect"], e["sources"]) for e in result["effects"] if corrects_at_rest(e)]
+    names = list(dict.fromkeys(found))
     left = f"{after} mdps on held-out data (noise floor {floor})"
     if not names:
         nothing = "that the firmware does not already correct"
