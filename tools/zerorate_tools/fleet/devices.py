@@ -88,7 +88,7 @@ def _files(sources: Iterable[str], without: Path | None) -> list[str]:
 
 
 def _nothing_at(source: str) -> ZerorateError:
-    do = "name recordings (.parquet, .csv, .csv.gz), a pattern or a folder of them"
+    do = "name recordings (.parquet, .csv, .csv.gz), a pattern or a folder of them, outside --out"
     return ZerorateError(f"{source}: no recording there; {do}")
 
 
