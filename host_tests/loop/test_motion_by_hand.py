@@ -183,6 +183,13 @@ def test_an_attitude_that_is_the_inverse_is_refused_with_the_words_that_mend_it(
     check_axes(moving_of(written(tmp_path, seen=True)))
 
 
+def test_an_attitude_of_another_motion_is_refused(tmp_path):
+    other = handled(8, np.zeros((3, 3)), minutes=0.5, seen=True).columns
+    with pytest.raises(CannotClose, match="does not turn as the rates do"):
+        parts = {name: other[name] for name in ("qw", "qx", "qy", "qz")}
+        check_axes(moving_of(written(tmp_path, lambda columns: columns | parts, seen=True)))
+
+
 @pytest.mark.parametrize(
     "jitter_ms, batch, lost, most_ms",
     [(0, 1, 0.0, 1e-3), (0, 1, 0.03, 1e-3), (4, 1, 0.0, 1), (0, 3, 0.0, 6), (0, 3, 0.01, 25)],

@@ -33,7 +33,8 @@ _WORTH_READING_DPS = 1.0
 _LEAST_SEEN = 0.5
 #: Seconds over which gravity is held in one place by about the right bias, and samples asked.
 _HELD_S, _SOME = 3.0, 65_536
-#: Of what an attitude's turns lack of the rates', its inverse's lack no more.
+#: Of what an attitude's turns lack of the rates', its inverse's lack no more; and of the rates'
+#: turns, an attitude lacks no more: optical ones lack 0.02 of a hand's.
 _PLAINLY = 0.5
 #: Rests this long are a reading of the bias, with what it wanders meanwhile.
 _REST_TICKS, REST_SIGMA = 10, np.radians(0.005)
@@ -145,12 +146,20 @@ def _beside_main(vectors: np.ndarray) -> float:
 
 def check_axes(moving: Moving) -> None:
     """Raise CannotClose where gravity turns as it would about other axes than those of the rates:
-    no small error of a matrix is told then; or where the attitude given turns as its inverse."""
-    if moving.mounted and moving.given is not None and _inverse(moving, moving.given):
-        raise CannotClose(
-            f"{moving.name}: its attitude turns the world's axes into the body's: import it with "
-            "--map qx=-COLUMN --map qy=-COLUMN --map qz=-COLUMN"
-        )
+    no small error of a matrix is told then; or where the attitude given turns as its inverse, or
+    neither so."""
+    if moving.mounted and moving.given is not None:
+        left, inverse = _unexplained(moving, moving.given)
+        if inverse < _PLAINLY * min(left, 1.0):
+            raise CannotClose(
+                f"{moving.name}: its attitude turns the world's axes into the body's: import it "
+                "with --map qx=-COLUMN --map qy=-COLUMN --map qz=-COLUMN"
+            )
+        if left > _PLAINLY:
+            raise CannotClose(
+                f"{moving.name}: its attitude does not turn as the rates do from second to second: "
+                "import it without qw qx qy qz, or with the attitude of this device and time"
+            )
     if moving.given is not None or not moving.accel.any():
         return
     axes = axes_of(np.degrees(moving.rate).T, moving.accel.T, moving.at_s)
@@ -161,17 +170,17 @@ def check_axes(moving: Moving) -> None:
         )
 
 
-def _inverse(moving: Moving, given: np.ndarray) -> bool:
-    """Whether the turns of an attitude's inverse are nearer to those of the rates, by far."""
+def _unexplained(moving: Moving, given: np.ndarray) -> tuple[float, float]:
+    """What the turns of an attitude, and of its inverse, lack of the rates', as a share."""
     ends = seconds_seen(given, moving.dt_s)
     if not ends:
-        return False
+        return 0.0, 1.0
     integrated = integrate(np.degrees(moving.rate), moving.dt_s, IDENTITY)
     ours = turned_between(integrated, ends).as_rotvec()
     either = (given, given * [1.0, -1.0, -1.0, -1.0])
     turns = (turned_between(q, ends).as_rotvec() for q in either)
-    left = [Rotation.align_vectors(ours, theirs)[1] for theirs in turns]
-    return bool(left[1] < _PLAINLY * min(left[0], float(np.linalg.norm(ours))))
+    left, inverse = (Rotation.align_vectors(ours, theirs)[1] for theirs in turns)
+    return left / float(np.linalg.norm(ours)), inverse / float(np.linalg.norm(ours))
 
 
 def moving_of(path: AnyPath, ticks: Ticks | None = None) -> Moving | None:
