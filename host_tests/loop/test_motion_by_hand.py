@@ -183,6 +183,15 @@ def test_an_attitude_that_is_the_inverse_is_refused_with_the_words_that_mend_it(
     check_axes(moving_of(written(tmp_path, seen=True)))
 
 
+def test_optics_that_lose_the_body_now_and_then_are_no_other_motion(tmp_path):
+    def lost(columns):  # half a turn about x, for a tenth of each ten seconds
+        at = np.arange(len(columns["qw"])) % 1000 < 100
+        turned = zip(("qw", "qx", "qy", "qz"), ("qx", "qw", "qz", "qy"), (-1, 1, 1, -1))
+        return columns | {n: np.where(at, sign * columns[o], columns[n]) for n, o, sign in turned}
+
+    check_axes(moving_of(written(tmp_path, lost, seen=True)))
+
+
 def test_an_attitude_of_another_motion_is_refused(tmp_path):
     other = handled(8, np.zeros((3, 3)), minutes=0.5, seen=True).columns
     with pytest.raises(CannotClose, match="does not turn as the rates do"):

@@ -34,8 +34,10 @@ _LEAST_SEEN = 0.5
 #: Seconds over which gravity is held in one place by about the right bias, and samples asked.
 _HELD_S, _SOME = 3.0, 65_536
 #: Of what an attitude's turns lack of the rates', its inverse's lack no more; and of the rates'
-#: turns, an attitude lacks no more: optical ones lack 0.02 of a hand's.
+#: turns, an attitude lacks no more: optical ones lack 0.02 to 0.26 of a phone's or a hand's.
 _PLAINLY = 0.5
+#: Rounds in which seconds that are far off are left out of a fit; more change nothing.
+_ROBUST = 3
 #: Rests this long are a reading of the bias, with what it wanders meanwhile.
 _REST_TICKS, REST_SIGMA = 10, np.radians(0.005)
 
@@ -179,8 +181,21 @@ def _unexplained(moving: Moving, given: np.ndarray) -> tuple[float, float]:
     ours = turned_between(integrated, ends).as_rotvec()
     either = (given, given * [1.0, -1.0, -1.0, -1.0])
     turns = (turned_between(q, ends).as_rotvec() for q in either)
-    left, inverse = (Rotation.align_vectors(ours, theirs)[1] for theirs in turns)
-    return left / float(np.linalg.norm(ours)), inverse / float(np.linalg.norm(ours))
+    left, inverse = (_lacking(ours, theirs) for theirs in turns)
+    return left, inverse
+
+
+def _lacking(ours: np.ndarray, theirs: np.ndarray) -> float:
+    """What turns (n, 3) lack of ours beside a bias, as a share of ours. Absolute values: optics
+    that lose a body for a second are wrong by half a turn there."""
+    near, bias = np.full(len(ours), True), np.zeros(3)
+    for _ in range(_ROBUST):
+        turn, _ = Rotation.align_vectors((ours - bias)[near], theirs[near])
+        apart = ours - turn.apply(theirs)
+        bias = np.median(apart, axis=0)
+        size = np.linalg.norm(apart - bias, axis=1)
+        near = size <= 2.0 * np.median(size)
+    return float(size.sum() / max(np.linalg.norm(ours, axis=1).sum(), 1e-300))
 
 
 def moving_of(path: AnyPath, ticks: Ticks | None = None) -> Moving | None:
