@@ -190,8 +190,7 @@ def _lacking(ours: np.ndarray, theirs: np.ndarray) -> float:
     that lose a body for a second are wrong by half a turn there."""
     near, bias = np.full(len(ours), True), np.zeros(3)
     for _ in range(_ROBUST):
-        turn, _ = Rotation.align_vectors((ours - bias)[near], theirs[near])
-        apart = ours - turn.apply(theirs)
+        apart = ours - _mounting((ours - bias)[near], theirs[near]).apply(theirs)
         bias = np.median(apart, axis=0)
         size = np.linalg.norm(apart - bias, axis=1)
         near = size <= 2.0 * np.median(size)
@@ -263,10 +262,13 @@ def in_the_axes_of(moving: Moving, given: np.ndarray) -> np.ndarray:
         return given
     integrated = integrate(np.degrees(moving.rate), moving.dt_s, IDENTITY)
     theirs, ours = (turned_between(q, ends).as_rotvec() for q in (given, integrated))
-    # what no turn shows is left as it is
+    return multiply(given, rotation(-np.degrees(_mounting(ours, theirs).as_rotvec())))
+
+
+def _mounting(ours: np.ndarray, theirs: np.ndarray) -> Rotation:
+    """From the axes of turns (n, 3) to those of ours; what no turn shows is left as it is."""
     faint = np.eye(3) * np.sqrt(_PLANAR * (ours**2).sum())
-    turn, _ = Rotation.align_vectors(np.vstack([ours, faint]), np.vstack([theirs, faint]))
-    return multiply(given, rotation(-np.degrees(turn.as_rotvec())))
+    return Rotation.align_vectors(np.vstack([ours, faint]), np.vstack([theirs, faint]))[0]
 
 
 def seconds_seen(attitude: np.ndarray, dt_s: float) -> list[tuple[int, int]]:
