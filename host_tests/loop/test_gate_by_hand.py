@@ -99,7 +99,8 @@ def test_two_recordings_are_of_one_setting_whose_clocks_are_within_five_percent(
         ),
         ("BMI160", "ICM-20948", {}, None),
         ("BMI160", "BMI160", {"gyro_lsb_per_dps": 65.5}, "--gyro-lsb-per-dps 65.5"),
-        ("unknown", "unknown", {"odr_hz": 144.0}, "--hz 120"),
+        ("unknown", "unknown", {"odr_hz": 121.0}, "--hz 110"),
+        ("unknown", "unknown", {"odr_hz": 200.0}, None),
         ("X", "X", {"more": {"binding": {"chip_id": 2}}}, "its chip_id is 2, but 1 in a"),
     ],
 )

@@ -78,7 +78,8 @@ def each_device(part: Part) -> Plot:
     shown = [t for t in TERMS if any(t in c.shown for c in part.curves)]
     for number, name in enumerate(shown):
         term = TERMS.index(name)
-        panels.append(Panel(f"{name}, {UNITS[term]}", "devices, sorted", UNITS[term]))
+        unit = UNITS[term].replace("degC", "°C")
+        panels.append(Panel(f"{name}, {unit}", "devices, sorted", unit))
         for axis in range(3):
             series += _sorted(part, axis, term, number)
     return Plot(

@@ -99,7 +99,7 @@ def _how_alike(name: str, one: Any, other: Any) -> str:
     if name == "sensor" and "unknown" in (one, other):
         part = other if one == "unknown" else one
         return f": if it is the same part, import the other with --sensor {part}"
-    if name == "odr_hz":
+    if name == "odr_hz" and max(one, other) < 2**0.5 * min(one, other):  # a chip's are twice apart
         hz = f"{(one * other) ** 0.5:.3g}"
         return f": if the setting is one and only the log's rate wavers, import both with --hz {hz}"
     if "_lsb_" not in name or None in (one, other):
