@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from zerorate_tools.compare.judge import matrix_of
 from zerorate_tools.loop.motion import by_windows, scales_and_timing
 from zerorate_tools.loop.motion.clock import evenly
 from zerorate_tools.loop.motion.device import DifferentDevices, Shown, check_one_device
@@ -117,6 +118,7 @@ def test_samples_at_the_end_of_an_accelerometers_range_are_in_no_window_and_it_i
     beyond = (np.abs(free.accel) > 1.01 * np.abs(railed.accel).max()).any(axis=1)
     assert beyond.any() and not railed.usable[beyond].any() and not free.railed
     assert "run: " in railed.railed and "end of a sensor's range" in railed.railed
+    assert railed.railed in matrix_of([tmp_path / "run.parquet"]).sentence()
     seen = replace(railed, given=np.tile([1.0, 0.0, 0.0, 0.0], (len(railed.rate), 1)))
     assert seen.usable[beyond].all() and not seen.railed, "beside an attitude no force is asked"
 

@@ -262,8 +262,8 @@ WITHOUT, WITH = "without the matrix", "with the matrix"
 class Won:
     """turned: degrees a minute of windows left out, without and with; unit: what turns them;
     heading: the same of heading, against an attitude that is given, else as the matrix turns it;
-    deployed: whether `close` would deploy it; refused: why the logs are not of one device, "" where
-    they are.
+    deployed: whether `close` would deploy it; refused: why nothing is told, "" where it is; notes:
+    of what was left out, a sentence each.
     """
 
     turned: tuple[float, float] = (float("nan"), float("nan"))
@@ -271,10 +271,14 @@ class Won:
     heading: tuple[float, float] = (float("nan"), float("nan"))
     deployed: bool = False
     refused: str = ""
+    notes: Sequence[str] = ()
 
     def sentence(self) -> str:
         if self.refused:
             return f"In motion: {self.refused}."
+        return " ".join([self._told(), *(f"Note: {note}." for note in self.notes)])
+
+    def _told(self) -> str:
         before, after = self.turned
         if not self.deployed:
             return f"In motion no matrix would lower the error: {seen_in_words(before, self.unit)}."
@@ -308,6 +312,8 @@ def matrix_of(logs: Sequence[str | Path]) -> Won | None:
     except CannotClose as problem:
         return Won(refused=str(problem))
     if shown is None:
-        return None
+        railed = "; ".join(m.railed for m in moving if m.railed)
+        return Won(refused=railed) if railed else None
     heading = shown.heading or shown.lost
-    return Won((shown.before, shown.after), shown.unit, heading, shown.found)
+    turned = shown.before, shown.after
+    return Won(turned, shown.unit, heading, shown.found, notes=shown.notes)
