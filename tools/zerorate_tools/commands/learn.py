@@ -141,7 +141,7 @@ def run_compare(arguments: argparse.Namespace) -> None:
     from ..recordings.atomic import check_apart
 
     if arguments.out is not None and arguments.out.suffix != ".html":
-        raise InFile(arguments.out, "the page is HTML", do="end the name in .html")
+        raise InFile(arguments.out, "the page is written as HTML", do="end the name in .html")
     check_apart([arguments.out], arguments.logs)
     with progress("comparing", len(arguments.logs) + 4) as advance:
         won = matrix_of(arguments.logs)
