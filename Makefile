@@ -30,9 +30,8 @@ typecheck: $(VENV)/.dev $(VENV)/.board-stubs
 typecheck-tools: $(VENV)/.dev  ## the host tools
 	$(BIN)/mypy
 
-# A worker has a core: threads of one's matrices would wait for the other's.
 pytest: $(VENV)/.dev runtimes
-	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest $(PYTEST_ARGS)
+	$(BIN)/python -m pytest $(PYTEST_ARGS)
 
 FUZZ ?= 3000
 fuzz: $(VENV)/.dev  ## every reader of files against FUZZ damaged ones each; what fails is kept
