@@ -27,6 +27,11 @@ def _minus(text: str) -> str:
     return text.replace("-", "−")
 
 
+def unit_of_page(unit: str) -> str:
+    """dps/degC^2 as a page has it, dps/°C²."""
+    return unit.replace("degC", "°C").replace("^2", "²")
+
+
 def fixed(value: float, digits: int, sign: str = "") -> str:
     """A number with so many digits behind the point; what rounds to zero has no minus.
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from ..numbers import counted, figure
+from ..numbers import counted, figure, unit_of_page
 from ..recordings.atomic import written_beside
 from ..report.page import rendered
 from ..report.plot import Panel, Plot, Series
@@ -60,7 +60,7 @@ def part_curve(part: Part) -> Plot:
         caption=f"Up to {_MOST_LINES} devices are drawn, each shrunken towards the part.",
         description="For each axis the mean curve of the part over temperature, the deviation "
         "between devices about it, and single devices.",
-        panels=tuple(Panel(f"{a} axis, dps", "degC", "dps") for a in _AXES),
+        panels=tuple(Panel(f"{a} axis, dps", "°C", "dps") for a in _AXES),
         series=tuple(series),
         views=_VIEWS,
     )
@@ -78,7 +78,7 @@ def each_device(part: Part) -> Plot:
     shown = [t for t in TERMS if any(t in c.shown for c in part.curves)]
     for number, name in enumerate(shown):
         term = TERMS.index(name)
-        unit = UNITS[term].replace("degC", "°C")
+        unit = unit_of_page(UNITS[term])
         panels.append(Panel(f"{name}, {unit}", "devices, sorted", unit))
         for axis in range(3):
             series += _sorted(part, axis, term, number)

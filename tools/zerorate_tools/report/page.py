@@ -19,7 +19,7 @@ from ..errors import ZerorateError
 from ..loop.read.ticks import AnyPath
 from ..loop.verify.analysis import Analysis
 from ..model import read_model
-from ..numbers import chance, figure
+from ..numbers import chance, figure, unit_of_page
 from ..recordings.atomic import final
 from . import residual_plots, sentences
 from .effect_plots import effect_plots
@@ -118,7 +118,11 @@ def _environment(package: str = __package__) -> Any:
         lstrip_blocks=True,
     )
     environment.filters.update(
-        figure=figure, chance=chance, sentence=sentences.sentence, capital=sentences.capital
+        figure=figure,
+        chance=chance,
+        unit=unit_of_page,
+        sentence=sentences.sentence,
+        capital=sentences.capital,
     )
     environment.globals.update(
         kinds=sentences, words=sentences, height=height, legend=legend, zip=zip, axes="xyz"

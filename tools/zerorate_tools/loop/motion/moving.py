@@ -36,7 +36,7 @@ _HELD_S, _SOME = 3.0, 65_536
 #: Of what an attitude's turns lack of the rates', its inverse's lack no more; and of the rates'
 #: turns, an attitude lacks no more: optical ones lack 0.02 to 0.26 of a phone's or a hand's.
 _PLAINLY = 0.5
-#: Rounds in which seconds that are far off are left out of a fit; more change nothing.
+#: Rounds in which seconds that are far off are left out of a fit; three more move a share by 0.002.
 _ROBUST = 3
 #: Rests this long are a reading of the bias, with what it wanders meanwhile.
 _REST_TICKS, REST_SIGMA = 10, np.radians(0.005)
